@@ -18,7 +18,7 @@ from gearidae.runs.plausibility import doubts
 from gearidae.runs.run_time import run_time
 from gearidae.runs.validity import validity_rows
 from gearidae.scene.friction import has_flank_friction
-from gearidae.scene.joints import has_joint_friction
+from gearidae.scene.joints import has_joint_friction, has_pin
 from gearidae.scene.sampled import columns_of
 from gearidae.scene.validity_row import contact_subject, mean_note
 
@@ -122,7 +122,7 @@ def _estimates(scene: Scene) -> Rows:
 def _friction(scene: Scene) -> Rows:
     from gearidae.mesh.friction import hub_share, hub_starting_torque
     from gearidae.runs.estimates import mean_force
-    from gearidae.runs.rubbing import flank_loss, hub_radii
+    from gearidae.runs.rubbing import flank_loss, hub_constants, hub_radii, joint_loads
 
     assert scene.gears is not None
     assert scene.load is not None
@@ -133,10 +133,25 @@ def _friction(scene: Scene) -> Rows:
             yield "lost to flank friction", "unknown", "no mean torque presses the teeth together"
         else:
             yield "lost to flank friction", f"{100 * loss:.3g} %", "of the drive's work, at a constant force"
-    if has_joint_friction(scene):
+    if not has_joint_friction(scene):
+        return
+    if not has_pin(scene):
         lost = 1.0 - hub_share(geometry, coefficient, radii)
-        yield "lost to hub friction", f"{100 * lost:.3g} %", "of the drive's work"
-        start = hub_starting_torque(geometry, scene.load.torque, coefficient, radii)
+        yield (
+            "lost to hub friction",
+            f"{100 * lost:.3g} %",
+            "of the drive's work, without adhesion and axial loads",
+        )
+    where = (
+        "under the mean drive"
+        if scene.drive is None or scene.drive.law is None
+        else "under the dry load alone"
+    )
+    for joint, load in joint_loads(scene, mean_force(scene)):
+        torque = f"friction takes {joint.torque(load):.4g} N m"
+        yield f"load of the {joint.name}", f"{load * 1e6:.4g} uN", f"{torque} of its shaft, {where}"
+    start = hub_starting_torque(geometry, scene.load.torque, coefficient, radii, hub_constants(scene))
+    if not has_pin(scene):
         yield (
             "starting torque",
             f"{start:.4g} N m",

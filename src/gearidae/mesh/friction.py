@@ -193,7 +193,11 @@ def hub_share(geometry: Geometry, coefficient: float, hub_radii: tuple[float, fl
 
 
 def hub_starting_torque(
-    geometry: Geometry, resistance: float, coefficient: float, hub_radii: tuple[float, float]
+    geometry: Geometry,
+    resistance: float,
+    coefficient: float,
+    hub_radii: tuple[float, float],
+    constants: tuple[float, float] = (0.0, 0.0),
 ) -> float:
     """Torque of the pinion that starts the gears against a resistance, with friction in the hubs alone.
 
@@ -205,15 +209,18 @@ def hub_starting_torque(
         Torque that resists the gear [N m].
     coefficient, hub_radii
         As for `hub_share`.
+    constants : tuple of float, optional
+        Torques C1 and C2 of the hubs of pinion and gear that do not depend on the force of the teeth [N m].
 
     Returns
     -------
     float
-        ``M2 (R1 + mu r_h1) / (R2 - mu r_h2)`` [N m]; infinite where the gear's hub locks, ``mu r_h2 >= R2``.
+        ``C1 + (M2 + C2) (R1 + mu r_h1) / (R2 - mu r_h2)`` [N m]; infinite where the gear's hub locks,
+        ``mu r_h2 >= R2``.
     """
     share = hub_share(geometry, coefficient, hub_radii)
-    unrubbed = resistance * geometry.base_radius_pinion / geometry.base_radius_gear
-    return unrubbed / share if share > 0.0 else math.inf
+    unrubbed = (resistance + constants[1]) * geometry.base_radius_pinion / geometry.base_radius_gear
+    return constants[0] + unrubbed / share if share > 0.0 else math.inf
 
 
 def starting_ratio(

@@ -11,7 +11,7 @@ import numpy as np
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.mesh.pair_contact import PairContact, pair_contact
-from gearidae.runs.rubbing import transmitted_share
+from gearidae.runs.rubbing import hub_constants, transmitted_share
 from gearidae.scene import Drive, Gears, Load, Scene
 
 _INNERMOST = -8.0  # a gap in roughnesses: teeth pressed deeper do not rest on their asperities
@@ -88,8 +88,8 @@ def steady_speed(scene: Scene) -> float:
         w2 of ``(M1 + g (w - w2 R2/R1)) R2/R1 = M2 + c w2 + alpha w2^2`` [rad/s], with the constants and the means of
         the schedules as torques M1 and M2, the viscous drag c and a drive that holds the mean speed w with the gain g;
         0 if the drive does not overcome the dry resistance, infinite if nothing slows the gear down. Friction leaves
-        the gear `transmitted_share` of the left side. Harmonics and laws are left out. (Teodorescu et al. 2009, Eq. 3,
-        prints the ratio upside down.)
+        the gear `transmitted_share` of the left side, and takes `hub_constants` besides. Harmonics and laws are left
+        out. (Teodorescu et al. 2009, Eq. 3, prints the ratio upside down.)
 
     Raises
     ------
@@ -102,14 +102,17 @@ def steady_speed(scene: Scene) -> float:
 
 def balanced_speed(scene: Scene, torque: float) -> float:
     """Speed of the gear [rad/s] at which a constant torque of the pinion [N m] is balanced, see `steady_speed`."""
-    return _balance(scene, torque, transmitted_share(scene, mean_force(scene)))
+    return _balance(scene, torque, transmitted_share(scene, mean_force(scene)), hub_constants(scene))
 
 
-def _balance(scene: Scene, torque: float, transmitted: float) -> float:
+def _balance(
+    scene: Scene, torque: float, transmitted: float, taken: tuple[float, float] = (0.0, 0.0)
+) -> float:
     gears, drive, load = _tables(scene)
     ratio = gears.gear_teeth / gears.pinion_teeth
     held = _mean_size(_over_run(scene, 0.0, drive.speed_knots()))
-    surplus = (torque + drive.speed_gain * held) * ratio * transmitted - _mean_resistance(scene)
+    driven = torque + drive.speed_gain * held - taken[0]
+    surplus = driven * ratio * transmitted - _mean_resistance(scene) - taken[1]
     if surplus <= 0.0:
         return 0.0
     linear = load.viscous + drive.speed_gain * ratio**2 * transmitted

@@ -1,16 +1,25 @@
-"""What friction of the flanks and the hubs takes, estimated in closed form for a scene."""
+"""What friction of the flanks and the joints takes, estimated in closed form for a scene."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
+import numpy as np
+
+from gearidae.arrays import Floats
 from gearidae.mesh.friction import hub_share, loss_fraction
 from gearidae.mesh.pair_contact import pair_contact
 from gearidae.scene.friction import friction_values, has_flank_friction
+from gearidae.scene.joints import Joint, has_pin, joints
+from gearidae.torques import torque_law
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
+
+
+_ANGLES: Final = 360
+"""Angles in a turn at which the force of a torque law is looked at."""
 
 
 def flank_coefficient(scene: Scene, load: float) -> float:
@@ -53,6 +62,44 @@ def hub_radii(scene: Scene) -> tuple[float, float]:
     """Radii of the hubs of pinion and gear [m]."""
     assert scene.gears is not None
     return scene.gears.pinion_hub_radius, scene.gears.gear_hub_radius
+
+
+def hub_constants(scene: Scene) -> tuple[float, float]:
+    """Torques of the hubs of pinion and gear without a load of the teeth: of adhesion and axial loads [N m]."""
+    taken = {joint.name: joint.torque(0.0) for joint in joints(scene)}
+    return taken.get("pinion hub", 0.0), taken.get("gear hub", 0.0)
+
+
+def joint_loads(scene: Scene, force: float) -> list[tuple[Joint, float]]:
+    """List the joints with their mean loads over a turn [N], at a constant force of the teeth [N].
+
+    The force of a pin is that of the torque law at the end of the run.
+    """
+    pins = _pin_forces(scene)
+    line = scene.geometry.pressure_angle + (scene.drive.orientation if scene.drive is not None else 0.0)
+    on_pinion = pins - force * np.array([math.sin(line), math.cos(line)])
+    loads = {
+        "pinion hub": float(np.hypot(*on_pinion.T).mean()),
+        "gear hub": force,
+        "pin": float(np.hypot(*pins.T).mean()),
+    }
+    return [(joint, loads[joint.name]) for joint in joints(scene)]
+
+
+def _pin_forces(scene: Scene) -> Floats:
+    """Forces of the drive's law on the pinion at angles all around, shape (n, 2) [N]; zero for a couple."""
+    angles = np.linspace(0.0, 2.0 * math.pi, _ANGLES, endpoint=False)
+    if not has_pin(scene):
+        return np.zeros((1, 2))
+    assert scene.drive is not None
+    assert scene.drive.law is not None
+    law, numbers = torque_law(scene.drive.law.name), np.array(scene.drive.law.numbers())
+    function, end = getattr(law.function, "py_func", law.function), scene.run.duration
+    values = [
+        function(end, angle, 0.0, numbers) if law.takes_angle else function(end, 0.0, numbers)
+        for angle in angles
+    ]
+    return np.array(values, np.float64)[:, 1:]
 
 
 def transmitted_share(scene: Scene, load: float) -> float:

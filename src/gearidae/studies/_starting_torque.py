@@ -20,7 +20,7 @@ from gearidae.mesh.friction import hub_starting_torque, starting_ratio
 from gearidae.runs.estimates import mean_force
 from gearidae.runs.execution import Execution, RunOptions, prepared
 from gearidae.runs.kept_runs import KeptRuns
-from gearidae.runs.rubbing import flank_coefficient, hub_radii
+from gearidae.runs.rubbing import flank_coefficient, hub_constants, hub_radii
 from gearidae.runs.running import solve_to_end, unfinished, unsolved
 from gearidae.scene.carried import numbers_of
 from gearidae.scene.quantity import whole
@@ -324,7 +324,8 @@ def _dry(scene: Scene) -> float:
     assert scene.load is not None
     assert scene.gears is not None
     gears, radii = scene.gears, hub_radii(scene)
-    return hub_starting_torque(scene.geometry, scene.load.torque, gears.hub_friction, radii)
+    constants = hub_constants(scene)
+    return hub_starting_torque(scene.geometry, scene.load.torque, gears.hub_friction, radii, constants)
 
 
 def _ratio(scene: Scene) -> float:
