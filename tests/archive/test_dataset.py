@@ -17,6 +17,8 @@ from gearidae.archive.variables import EVENTS, SAMPLES
 from gearidae.records import (
     ELASTIC_COLUMNS,
     GEAR_COLUMNS,
+    HUB_COLUMNS,
+    PIN_COLUMNS,
     POPULATION_COLUMNS,
     ROLLER_COLUMNS,
     EventKind,
@@ -62,7 +64,8 @@ def layout_of(ds: xr.Dataset) -> dict[str, tuple[str, str]]:
 
 
 def test_catalogue_knows_every_column_of_the_engine():
-    assert set(SAMPLES) == {*GEAR_COLUMNS, *ROLLER_COLUMNS, *ELASTIC_COLUMNS, *POPULATION_COLUMNS}
+    columns = (GEAR_COLUMNS, ROLLER_COLUMNS, ELASTIC_COLUMNS, POPULATION_COLUMNS, HUB_COLUMNS, PIN_COLUMNS)
+    assert set(SAMPLES) == {name for names in columns for name in names}
 
 
 def test_gear_run_has_the_promised_layout(make_solution):
