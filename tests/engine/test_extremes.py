@@ -40,8 +40,9 @@ def dense(scene, samples=1_000_001):
         HIGH.replace({"coating.sam_fraction": 0.0}),
         HIGH.replace({"mesh.damping": 1e-8}),
         HIGH.replace({"mesh.static_error": [{"order": 1, "amplitude": "20 nm", "phase": 0.3}]}),
+        HIGH.replace({"contact.friction": 0.3, "gears.hub_friction": 0.5, "gears.pinion_hub_radius": 2e-5}),
     ],
-    ids=["half worn", "stuck", "high", "bare", "damped", "static error"],
+    ids=["half worn", "stuck", "high", "bare", "damped", "static error", "friction"],
 )
 def test_extremes_are_those_of_a_million_samples(scene):
     solution = dense(scene)

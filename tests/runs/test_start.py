@@ -40,6 +40,10 @@ def shortened(case, model, backend):
     changes = {"contact.model": model, "run.samples": SAMPLES, "run.rtol": 1e-6}
     share = 2.0 ** -(4 + 4 * (model == "elastic") + 5 * (backend == "sksundae"))
     half = 2.0 ** math.floor(math.log2(share * scene.run.duration))
+    if (
+        case.stem == "microengine"
+    ):  # at rest the times at which a law is looked at depend on the run's duration
+        changes |= {"gears.hub_friction": 0.0}
     if scene.roller is not None:  # the impact is in the second half
         half = 2.0 ** math.floor(math.log2(0.6 * scene.roller.height / scene.roller.speed))
     return scene.replace(changes | {"run.duration": half}), half

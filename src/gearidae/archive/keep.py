@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gearidae.archive.variables import (
+    BESIDE_BALANCE,
     CONTACT,
     ENERGY_BALANCE,
     EVENTS,
@@ -118,13 +119,14 @@ def read_keep(keep: Iterable[str] | str | None, scene: Scene) -> Keep:
         "verdict": tuple(VERDICT),
         "extremes": (*extremes, *([] if scene.roller is not None else [STANDSTILL_LIST.name])),
         "statistics": (*RUN, *(each.name for each in CONTACT)),
-        "energy_balance": tuple(ENERGY_BALANCE),
+        "energy_balance": (*ENERGY_BALANCE, *BESIDE_BALANCE),
         "scene": ("scene",),
         "exposures": tuple(EXPOSURES),
         "samples": columns_of(scene),
         "events": (*EVENTS, "impacts"),
     }
-    single = (*RUN, *OF_SWEPT_RUN, *extremes, *ENERGY_BALANCE, *EXPOSURES, *columns_of(scene), *VERDICT)
+    energies = members["energy_balance"]
+    single = (*RUN, *OF_SWEPT_RUN, *extremes, *energies, *EXPOSURES, *columns_of(scene), *VERDICT)
     members |= {name: (name,) for name in single if name not in members}
     names = set(_ALWAYS) | (set(_IN_WORDS) if scene.roller is None else set())
     for name in asked:

@@ -21,7 +21,7 @@ from gearidae.archive.extremes import extremes_of
 from gearidae.archive.select import is_roller, scene_of
 from gearidae.archive.variables import ENERGY_BALANCE
 from gearidae.arrays import Floats
-from gearidae.records import EventKind, Extremes
+from gearidae.records import EnergyBalance, EventKind, Extremes
 from gearidae.records.energy import LOSSES
 from gearidae.records.quantity import Totals
 from gearidae.records.standing import Holding
@@ -156,17 +156,12 @@ def _largest_force(extremes: Extremes) -> tuple[float, float]:
 def _energies(balance: Mapping[str, float] | None) -> dict[str, float]:
     """Energies of the run summary from those of the energy balance; NaN without one."""
     energies = {**(balance or dict.fromkeys(ENERGY_BALANCE, math.nan))}
-    useful, friction = (
-        sum(energies[name] for name, each in LOSSES.items() if each.group == group)
-        for group in ("useful", "friction")
-    )
-    lost = sum(energies[name] for name in LOSSES)
     contact = energies["adhesion_loss"] + energies["stored_change"]
     return energies | {
         "residual": abs(energies["residual"]),
         "contact_loss": contact - (energies["radius_work"] + energies["model_change"]),
-        "friction_loss": friction,
-        "efficiency": useful / lost if lost > 0.0 and energies["drive_work"] > 0.0 else math.nan,
+        "friction_loss": sum(energies[name] for name, each in LOSSES.items() if each.group == "friction"),
+        "efficiency": EnergyBalance(energies).efficiency,
     }
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from gearidae.archive.extremes import standstills_as_text
 from gearidae.archive.variables import (
+    BESIDE_BALANCE,
     ENERGY_BALANCE,
     EXTREMES,
     ROLLER_EXTREMES,
@@ -53,7 +54,8 @@ def total_variables(
 
     made: dict[Hashable, Any] = {}
     balances = [_energies(each, run.balance) for each, run in zip(scenes, runs, strict=True)]
-    for name, variable in ENERGY_BALANCE.items() if any(balances) else ():
+    numbers_kept = {**ENERGY_BALANCE, **BESIDE_BALANCE}
+    for name, variable in numbers_kept.items() if any(balances) else ():
         energies = (numbers.get(name, math.nan) for numbers in balances)
         made[name] = (dims, stacked(energies, variable.dtype), variable.attributes)
     extremes = [run.extremes or Extremes() for run in runs]
@@ -78,4 +80,5 @@ def _energies(scene: Scene, balance: EnergyBalance | None) -> Mapping[str, float
     if balance is None or not math.isfinite(balance.residual + balance.throughput):
         return {}
     bound = balance.bound(scene.run.rtol, roller=scene.roller is not None)
-    return {**balance, "residual": balance.residual, "residual_bound": bound}
+    derived = {"residual": balance.residual, "residual_bound": bound, "efficiency": balance.efficiency}
+    return {**balance, **derived}

@@ -27,7 +27,7 @@ from gearidae.records import (
     Flank,
 )
 from gearidae.records import extremes as records
-from gearidae.records.energy import ENERGY_NOW, ENERGY_SUMS
+from gearidae.records.energy import ENERGY_NOW, ENERGY_SUMS, SLIDING
 from gearidae.records.quantity import INT, Quantity
 
 if TYPE_CHECKING:
@@ -183,6 +183,13 @@ _RESIDUAL = (
     Variable("residual", (), "J", "what does not add up in the energy balance"),
     Variable("residual_bound", (), "J", "what the residual stays below in a sound run"),
 )
+_EFFICIENCY = Variable(
+    "efficiency",
+    (),
+    "1",
+    "what drag and dry resistance at the gear have taken over all that has been lost",
+    comment="NaN where nothing has been lost, or the drive has done no work",
+)
 _MIN_SEPARATION = Variable(
     "min_separation",
     (),
@@ -240,10 +247,16 @@ _PLACES = (
 EXPOSURES: Mapping[str, Variable] = {variable.name: variable for variable in _EXPOSURES}
 PLACES: Mapping[str, Variable] = {variable.name: variable for variable in _PLACES}
 """What the exposures are labelled by."""
+_SUMS = Variable.catalogue((*ENERGY_SUMS, *ENERGY_NOW))
 ENERGY_BALANCE: Mapping[str, Variable] = {
-    **Variable.catalogue((*ENERGY_SUMS, *ENERGY_NOW)),
+    **{name: variable for name, variable in _SUMS.items() if name not in SLIDING},
     **{variable.name: variable for variable in _RESIDUAL},
 }
+BESIDE_BALANCE: Mapping[str, Variable] = {
+    **{name: _SUMS[name] for name in SLIDING},
+    _EFFICIENCY.name: _EFFICIENCY,
+}
+"""What a run with an energy balance keeps besides; archives of version 0.2 have none of it."""
 ROLLER_EXTREMES: Mapping[str, Variable] = {
     **Variable.catalogue(records.ROLLER_EXTREMES),
     _MIN_SEPARATION.name: _MIN_SEPARATION,
@@ -282,6 +295,7 @@ def by_name() -> dict[str, Variable]:
         **OF_SWEPT_RUN,
         **VERDICT,
         **ENERGY_BALANCE,
+        **BESIDE_BALANCE,
         **EXTREMES,
         STANDSTILL_LIST.name: STANDSTILL_LIST,
         **EXPOSURES,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Mapping
 from functools import partial
@@ -101,6 +102,8 @@ TERMS: Final[Mapping[str, Quantity]] = {
     name: each for each in (*ENERGY_SUMS, *ENERGY_NOW) if each.sign for name in each.names
 }
 """Terms of the balance by their names in an archive."""
+SLIDING: Final = tuple(name for each in ENERGY_SUMS if each.name == "sliding" for name in each.names)
+"""Names of what is summed up with the energies and is none."""
 LOSSES: Final[Mapping[str, Quantity]] = {
     name: each for name, each in TERMS.items() if each in ENERGY_SUMS and each.sign < 0
 }
@@ -141,6 +144,13 @@ class EnergyBalance(Totals):
     def residual(self) -> float:
         """Works minus losses and changes of the energies [J]."""
         return float(sum(each.sign * self[name] for name, each in TERMS.items()))
+
+    @property
+    def efficiency(self) -> float:
+        """What drag and dry resistance at the gear have taken over all that has been lost [1]; NaN without work."""
+        lost = sum(self[name] for name in LOSSES)
+        useful = sum(self[name] for name, each in LOSSES.items() if each.group == "useful")
+        return float(useful / lost) if lost > 0.0 and self.drive_work > 0.0 else math.nan
 
     @property
     def imbalance(self) -> float:

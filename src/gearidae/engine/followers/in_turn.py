@@ -4,7 +4,7 @@ A follower keeps sums or extremes of its own and changes nothing else. It is a m
 integration, `step` at every accepted time, `event` before a pair's history takes what has happened at a root, `flips`
 where asperities have joined or detached, `resume` behind all events of a root, and `finish` before a restart, at the
 end and for a look in between. It leaves out what it does not need. Exposures use what joining and the balance have left
-at the same time.
+at the same time, and extremes the force that losses by friction have.
 """
 
 from __future__ import annotations
@@ -52,10 +52,10 @@ def step(
     """
     if m.scene.follow.balance != 0:
         joining.step(m, t, y, yp[W] if m.scene.kind == GEARS else 0.0)
-    if m.scene.follow.extremes != 0:
-        extremes.step(m, t, y, yp, at[0], between[0])
     if m.scene.follow.friction != 0:
         rubbing.book_rubbing(m, t, y, at[1], between[0], between[1])
+    if m.scene.follow.extremes != 0:
+        extremes.step(m, t, y, yp, at[0], between[0])
     if m.scene.follow.balance != 0:
         balance.step(m, t, y, yp, at, between)
     if m.scene.follow.exposures != 0:

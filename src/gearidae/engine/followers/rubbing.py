@@ -51,7 +51,7 @@ def note_rubbing(m: Model, t: float, y: Floats) -> None:
         set_limits(m, t, y[W])
     found = solve_shafts(m, t, y, turn, pinion, gear)
     r = m.work.rubbing
-    r.time = t
+    r.time, r.force = t, found.mesh.drive - found.mesh.coast + m.scene.damping * y[V]
     for which in range(_POWERS):
         r.power[which] = r.power_rate[which] = 0.0
     drive = coast = drive_friction = coast_friction = 0.0  # rates

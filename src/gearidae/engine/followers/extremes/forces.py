@@ -29,12 +29,15 @@ _CLOSE: Final = 1e-3
 def force_of_motion(m: Model, t: float, y: Floats, yp: Floats) -> float:
     """Force along the line of action, mesh damping included, from the pinion's acceleration; of a roller, on it.
 
-    See `gearidae.engine.motion.residual`, whose first equation is solved for the force.
+    See `gearidae.engine.motion.residual`, whose first equation is solved for the force. Friction acts on the pinion,
+    too: with it the contact law is asked.
     """
     if m.scene.kind == ROLLER:
         return 0.0 if in_flight(m) else yp[V] / m.scene.gear_inverse_mass
     if in_flight(m):
         return m.scene.damping * y[V]
+    if m.scene.friction.rubs != 0:
+        return _force_with_friction(m, t, y)
     acceleration, turn = yp[V] + yp[W], y[V] + y[W]
     angle = torque_angle(m, DRIVE, y[U], y[PHASE])
     if m.scene.error_count == 0:
@@ -44,6 +47,13 @@ def force_of_motion(m: Model, t: float, y: Floats, yp: Floats) -> float:
     drive = torque_force(m, DRIVE, t, angle, turn)
     pinion = (acceleration + e2 * turn * turn) / ((1.0 - e1) * m.scene.pinion_inverse_mass)
     return (drive - pinion) / (1.0 - e1)
+
+
+@compiled
+def _force_with_friction(m: Model, t: float, y: Floats) -> float:
+    """Force by the contact law, which the losses by friction have just asked at the same time."""
+    r = m.work.rubbing
+    return float(r.force) if m.scene.follow.friction != 0 and r.time == t else float(_force_of_law(m, t, y))
 
 
 @compiled
