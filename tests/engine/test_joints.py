@@ -293,9 +293,9 @@ def test_a_pinion_rests_to_the_last_bit_under_a_force_within_the_set():
         gd.unregister_torque("going_round")
     assert np.all(ds.pinion_speed == 0.0)
     assert np.all(ds.transmission_error == ds.transmission_error[0])
-    assert (
-        ds.largest_mesh_force == ds.smallest_mesh_force == 0.0
-    )  # teeth do not touch: the joints hold the drive
+    # teeth do not touch: the joints hold the drive, and the mean law's tail at six roughnesses is left
+    assert ds.largest_mesh_force == ds.smallest_mesh_force
+    assert ds.largest_mesh_force < 1e-12
     assert np.any(moved.pinion_speed != 0.0)
 
 
