@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 from gearidae.engine.events.events import guard
 from gearidae.engine.events.record import EVENT_NUMBERS
 from gearidae.engine.events.schedule_knots import next_stop
+from gearidae.engine.followers.passages import PASSAGE_NUMBERS
 from gearidae.engine.formulas import adams
-from gearidae.engine.integrate.driver import BLOCK_EVENTS
+from gearidae.engine.integrate.driver import BLOCK_EVENTS, BLOCK_PASSAGES, Output
 from gearidae.engine.integrate.epilogue import finish_step, has_room, prepare_restart
 from gearidae.engine.integrate.native import restart, state_for_sample
 from gearidae.engine.integrate.root_finding import Stepper, state_at
@@ -32,6 +33,10 @@ WORDS: Final = POINTERS + HANDLES
 VECTORS: Final = 4
 """State, rates and work space; the time follows them."""
 
+_PASSAGES_AT: Final = BLOCK_EVENTS * EVENT_NUMBERS
+BLOCK_NUMBERS: Final = _PASSAGES_AT + BLOCK_PASSAGES * PASSAGE_NUMBERS
+"""Numbers of the events and the passages of a block."""
+
 _GO_ON, _AFRESH, _DONE, _BROKEN = range(4)  # as in loop.c
 
 _PTR: Any = types.intp
@@ -42,12 +47,15 @@ _REALS: Any = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
 def _finish(place, numbers, flag, events):  # type: ignore[no-untyped-def]
     m = model_at(place)
     n, driver = m.scene.states, m.work.driver
-    a, room = carray(numbers, (VECTORS * n + 1,)), carray(events, (BLOCK_EVENTS, EVENT_NUMBERS))
+    a, block = carray(numbers, (VECTORS * n + 1,)), carray(events, (BLOCK_NUMBERS,))
+    room = block[:_PASSAGES_AT].reshape((BLOCK_EVENTS, EVENT_NUMBERS))
+    passages = block[_PASSAGES_AT:].reshape((BLOCK_PASSAGES, PASSAGE_NUMBERS))
     driver.time = a[VECTORS * n]
-    if not has_room(m.work.driver.events, room):  # nobody reads them
-        driver.events = 0
+    out = Output(room, room, passages)
+    if not has_room(driver.events, driver.passages, out):  # nobody reads them
+        driver.events = driver.passages = 0
     between = (a[2 * n : 3 * n], a[3 * n : 4 * n])
-    afresh = finish_step(m, a[:n], a[n : 2 * n], between, flag, room)
+    afresh = finish_step(m, a[:n], a[n : 2 * n], between, flag, out)
     if driver.error != 0:
         return _BROKEN
     if driver.done != 0:

@@ -17,8 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.engine.events.record import EVENT_NUMBERS
-from gearidae.engine.integrate.driver import BLOCK_EVENTS, CONVERGENCE_FAILURES_HIGH
+from gearidae.engine.integrate.driver import CONVERGENCE_FAILURES_HIGH
 from gearidae.engine.integrate.root_finding import SHARPNESS
 from gearidae.engine.model.located import POINTERS, note_addresses
 from gearidae.engine.motion.observe import observe
@@ -84,7 +83,7 @@ def _pointer(array: NDArray[Any]) -> ctypes.c_void_p:
 def _run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
     from gearidae.engine.integrate.callbacks import callbacks
     from gearidae.engine.sundials import ida_memory as opened
-    from gearidae_bench.c_calls import VECTORS, WORDS, addresses
+    from gearidae_bench.c_calls import BLOCK_NUMBERS, VECTORS, WORDS, addresses
 
     m, n = problem.prepare(tolerance, times.size), problem.start.size
     words, numbers = np.zeros(WORDS, np.int64), np.zeros(VECTORS * n + 1)
@@ -93,7 +92,7 @@ def _run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
     y[:] = problem.start
     note_addresses(m, pointers)
     rows = np.zeros((times.size, max(len(problem.columns), 9)))
-    events, steps, calls = np.empty((BLOCK_EVENTS, EVENT_NUMBERS)), np.zeros(1, np.int64), addresses()
+    events, steps, calls = np.empty(BLOCK_NUMBERS), np.zeros(1, np.int64), addresses()
     m.work.search.sharpness = SHARPNESS * tolerance
     observe(m, 0.0, y, rows[0])
     where = opened.Places(places(), newton_places())

@@ -95,7 +95,8 @@ def _engine(backend: str, *, follow: bool = True) -> Callable[[Problem, float, F
     def run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
         statistics = Statistics()
         if not follow:
-            problem.model.scene.follow.balance = problem.model.scene.follow.extremes = 0
+            followed = problem.model.scene.follow
+            followed.balance = followed.extremes = followed.passages = 0
         table = np.concatenate(
             [b.rows for b in run_blocks(problem, tolerance, times.size, backend, statistics)]
         )

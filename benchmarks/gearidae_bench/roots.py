@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from gearidae.engine.events.events import guard
 from gearidae.engine.events.histories import accept
+from gearidae.engine.integrate.driver import Output
 from gearidae.engine.integrate.epilogue import handle
 from gearidae.engine.model.state import Model
 from gearidae_bench.compiling import compiled
@@ -133,8 +134,9 @@ def handle_event(m: Model, t: float, y: Floats, room: Floats) -> int:
     """
     driver = m.work.driver
     driver.step, driver.step_end, driver.events = 0.0, t, 0
-    m.scene.follow.balance = m.scene.follow.extremes = 0  # the other methods keep neither
-    if handle(m, t, y, y, room):
+    # the other methods keep none of them
+    m.scene.follow.balance = m.scene.follow.extremes = m.scene.follow.passages = 0
+    if handle(m, t, y, y, Output(room, room, room)):
         return RESTART
     return CHATTER if driver.error != 0 else CONTINUE
 

@@ -91,12 +91,12 @@ def test_an_entry_under_another_name_is_not_taken(store):
 def test_checkpoints(tmp_path):
     archive = tmp_path / "out.nc"
     state = np.array([0x7FF8000000000123, 1, 2**63], np.uint64).view(np.float64)  # some are no numbers
-    point = Checkpoint(3, 4, 0.1, 0.2, Statistics(steps=7, restarts=2), state)
+    point = Checkpoint({"time": 3, "event": 4}, 0.1, 0.2, Statistics(steps=7, restarts=2), state)
     assert Checkpoint.newest(archive, "one") is None
     point.keep(archive, "one")
     found = Checkpoint.newest(archive, "one")
     assert found.state.tobytes() == state.tobytes()
-    assert (found.samples, found.events, found.time, found.wall_time) == (3, 4, 0.1, 0.2)
+    assert (found.lengths, found.time, found.wall_time) == (point.lengths, 0.1, 0.2)
     assert found.statistics == point.statistics
     assert Checkpoint.newest(archive, "other") is None  # of a run that this one has replaced
     (path,) = Store(archive).folder.iterdir()
@@ -110,7 +110,7 @@ def test_checkpoints(tmp_path):
 def test_the_name_of_a_run_leads_nowhere(tmp_path):
     """It is read from a file, which may hold anything."""
     for run in ("../../other", "/tmp/other", "a" * 5000, "\udc80", ""):
-        Checkpoint(0, 0, 0.1, 0.2, Statistics(), np.empty(3)).keep(tmp_path / "out.nc", run)
+        Checkpoint({}, 0.1, 0.2, Statistics(), np.empty(3)).keep(tmp_path / "out.nc", run)
         assert Checkpoint.newest(tmp_path / "out.nc", run).time == 0.1
     assert [path.name for path in tmp_path.iterdir()] == ["out.nc.runs"]
     assert len(Store(tmp_path / "out.nc").entries()) == 5

@@ -6,7 +6,8 @@ import pytest
 import gearidae as gd
 from gearidae.engine.backend import run_blocks
 from gearidae.engine.events.record import EVENT_NUMBERS, EVENTS_AT_ONCE, record
-from gearidae.engine.integrate.driver import BLOCK_EVENTS, Ending, Output
+from gearidae.engine.followers.passages import PASSAGES_AT_ONCE
+from gearidae.engine.integrate.driver import BLOCK_EVENTS, BLOCK_PASSAGES, Ending, Output
 from gearidae.engine.integrate.epilogue import has_room
 from gearidae.engine.model.state import MATERIALS, SLOTS_HIGH
 from gearidae.engine.setup.build import make_problem
@@ -37,12 +38,14 @@ def test_a_block_has_room_for_all_that_can_happen_at_once():
 
 def test_room_is_for_so_many_and_what_is_full_is_not_written_beyond():
     m, out = make_problem(FLIGHT).model, Output.empty(9)
-    for count, room in (
-        (0, True),
-        (BLOCK_EVENTS - EVENTS_AT_ONCE, True),
-        (BLOCK_EVENTS - EVENTS_AT_ONCE + 1, False),
+    most_events, most_passages = BLOCK_EVENTS - EVENTS_AT_ONCE, BLOCK_PASSAGES - PASSAGES_AT_ONCE
+    for events, passages, room in (
+        (0, 0, True),
+        (most_events, most_passages, True),
+        (most_events + 1, 0, False),
+        (0, most_passages + 1, False),
     ):
-        assert has_room(count, out.events) == room
+        assert has_room(events, passages, out) == room
     table = np.full((4, EVENT_NUMBERS), -7.0)
     assert record(m, table[:3], 2, 0.0, 1.0, 0, 0.0, 0.0) == 3
     assert record(m, table[:3], 3, 0.0, 1.0, 0, 0.0, 0.0) == 3

@@ -122,7 +122,7 @@ def test_rolling_at_a_fixed_gap_costs_what_each_asperity_loses():
         y[2] = end
         if asperity_guard(m, y) < 0.0:
             flip_asperities(m, y)
-            record_flips(m, 0.0, room, 0)
+            record_flips(m, 0.0, y, room, 0)
     assert m.state.asperity_onsets == m.state.asperity_detachments == count
     force = work * pitch * float(m.scene.force_unit) / (high - low)
     density = count / tail / (high - low)  # N L

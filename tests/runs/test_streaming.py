@@ -48,7 +48,7 @@ def many_small_blocks(monkeypatch):
     monkeypatch.setattr(portable, "BLOCK_SECONDS", 0.0)
     monkeypatch.setattr(driver, "BLOCK_ROWS", 7)
     monkeypatch.setattr(growing, "CHECKPOINT_SECONDS", 0.0)
-    monkeypatch.setattr(growing, "EVENT_ROOM", 16)
+    monkeypatch.setattr(growing, "ROOM", {"event": 16, "passage": 1})
     monkeypatch.setattr(growing, "COPIED", 50)
 
 
@@ -275,7 +275,7 @@ def test_interrupted_and_resumed_is_the_same_run(path):
     assert finished.attrs["wall_time"] > wall_time > 0.0
 
 
-@pytest.mark.parametrize("name", ["committed_samples", "event_kind", "gear_speed"])
+@pytest.mark.parametrize("name", ["committed_samples", "event_kind", "passage_pair", "gear_speed"])
 def test_an_unfinished_archive_that_lacks_a_variable_is_refused(path, name):
     with pytest.raises(gd.Interrupted):
         simulate(path, progress=interrupt_after(0.5))
@@ -414,7 +414,7 @@ def test_a_file_that_may_not_grow_ends_the_run_and_is_resumed(path):
     case.write_text(gd.dump_case(scene))
 
     def limited():
-        native.BLOCK_STEPS, growing.EVENT_ROOM = 500, 1024
+        native.BLOCK_STEPS, growing.ROOM = 500, {"event": 1024, "passage": 16}
         resource.setrlimit(resource.RLIMIT_FSIZE, (400_000, 400_000))
         return main(["run", str(case), "-o", str(path)])
 

@@ -320,7 +320,7 @@ def test_every_number_survives(tmp_path):
         for mine, theirs in [
             (run.time, back.time),
             *zip(run.samples.values(), back.samples.values(), strict=True),
-            *((getattr(events, name), getattr(back.events, name)) for name in events.__slots__),
+            *((getattr(events, name), getattr(back.events, name)) for name in events.columns),
         ]:
             assert mine.dtype == theirs.dtype
             assert mine.tobytes() == theirs.tobytes()

@@ -12,6 +12,7 @@ import numpy as np
 import xarray as xr
 
 from gearidae.archive.joint import history_of, part_name, software_of
+from gearidae.archive.rows import DIMS, kinds_in
 from gearidae.archive.select import run_scene
 from gearidae.archive.single import single_run
 from gearidae.archive.variables import RUN
@@ -23,7 +24,7 @@ _CONTINUOUS = ("gear_speed", "pinion_speed", "gear_angle", "transmission_error",
 _SEAM = 1e3
 """Tolerances by which a state may differ on both sides of a seam, over its range: each run reads it from its own dense
 output."""
-_GROWING = (("time",), ("event",))
+_GROWING = (("time",), *((dim,) for dim in DIMS))
 """What a chain has more of with each run; anything else is that of the last."""
 _SUMS = ("wall_time", *(name for name, variable in RUN.items() if variable.dtype is np.int64))
 
@@ -52,6 +53,7 @@ def chained(parts: Sequence[xr.Dataset]) -> xr.Dataset:
     _refuse_other_samples(singles)
     cut = [singles[0]]
     for number, (before, after) in enumerate(pairwise(singles), 1):
+        _refuse_other_order(before, after, part_name(number))
         cut.append(after.isel(time=slice(_seam(before, after, part_name(number)), None)))
     last = singles[-1]
     variables = {
@@ -112,6 +114,15 @@ def _seam(before: xr.Dataset, after: xr.Dataset, name: str) -> int:
             "time", f"{start:g} s", f"is where {name} begins: from {end:g} s to then a run is missing"
         )
     return 0
+
+
+def _refuse_other_order(before: xr.Dataset, after: xr.Dataset, name: str) -> None:
+    """Refuse rows of the run before that are later than those of a run: they have not been cut with the samples."""
+    for kind in kinds_in(after):
+        times = [part[f"{kind.dim}_time"].values for part in (before, after)]
+        if all(each.size for each in times) and times[0][-1] > times[1][0]:
+            allowed = f"in the {kind.field} of {name} must follow the run before: cut them with the samples"
+            raise SceneError(f"{kind.dim}_time", f"{times[1][0]:g} s", allowed)
 
 
 def _refuse_jump(before: xr.Dataset, after: xr.Dataset, name: str) -> None:

@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from gearidae.archive.commits import Commit
+from gearidae.archive.commits import Commit, with_lengths
 from gearidae.archive.store import Store
 from gearidae.records import COUNTERS, EnergyBalance, Extremes, Statistics, Words
 
@@ -24,8 +24,8 @@ class Checkpoint:
 
     Attributes
     ----------
-    samples, events : int
-        How many the run had produced there.
+    lengths : mapping of str to int
+        How much the run had produced along each dimension that grows.
     time : float
         Simulated time [s].
     wall_time : float
@@ -37,13 +37,12 @@ class Checkpoint:
     extremes : Extremes, optional
         Of the run until then, without exposures.
     checksums : mapping of str to int
-        Of the samples and events until then, see `gearidae.archive.commits.Commit`.
+        Of all that until then, see `gearidae.archive.commits.Commit`.
     balance : EnergyBalance, optional
         Of the run until then.
     """
 
-    samples: int
-    events: int
+    lengths: Mapping[str, int]
     time: float
     wall_time: float
     statistics: Statistics
@@ -55,7 +54,7 @@ class Checkpoint:
     @property
     def commit(self) -> Commit:
         """State of the archive at the checkpoint."""
-        return Commit(self.samples, self.events, self.checksums)
+        return Commit(self.lengths, self.checksums)
 
     def keep(self, archive: Path, run: str) -> None:
         """Write it beside the archive of a run, in the place of the one before, once it is on the disk.
@@ -71,8 +70,7 @@ class Checkpoint:
             If the disk does not take it.
         """
         header = {
-            "samples": self.samples,
-            "events": self.events,
+            "lengths": self.lengths,
             "time": self.time,
             "wall_time": self.wall_time,
             "checksums": self.checksums,
@@ -95,7 +93,7 @@ class Checkpoint:
             statistics, extremes = Statistics(**header.pop("statistics")), header.pop("extremes")
             balance = header.pop("balance")
             return cls(
-                **header,
+                **with_lengths(header),
                 statistics=statistics,
                 balance=balance and EnergyBalance(balance),
                 state=tables["state"].view(np.float64),

@@ -20,6 +20,8 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from gearidae.records import ROWS
+
 log = logging.getLogger(__name__)
 
 RECORDS: Final = "commit_records"
@@ -28,8 +30,11 @@ LENGTH: Final = 4096
 """Bytes of a record."""
 COPIED: Final = 2**20
 """Rows read at a time."""
-COUNTS: Final = ("committed_samples", "committed_events")
-"""Variables that say to readers of other programs how much is committed."""
+COUNTS: Final[Mapping[str, str]] = {
+    "time": "committed_samples",
+    **{kind.dim: f"committed_{kind.field}" for kind in ROWS},
+}
+"""Dimensions that grow, each with the variable that says to readers of other programs how much is committed."""
 _READ_ALL: Final = "import sys, netCDF4; [v[...] for v in netCDF4.Dataset(sys.argv[1]).variables.values()]"
 
 
@@ -39,8 +44,8 @@ class Commit:
 
     Attributes
     ----------
-    samples, events : int
-        How many are committed.
+    lengths : mapping of str to int
+        How much is committed along each dimension that grows.
     checksums : mapping of str to int
         CRC-32 of the committed values of each variable that grows.
     number : int
@@ -51,8 +56,7 @@ class Commit:
         CRC-32 of the values of all other variables.
     """
 
-    samples: int = 0
-    events: int = 0
+    lengths: Mapping[str, int] = field(default_factory=dict)
     checksums: Mapping[str, int] = field(default_factory=dict)
     number: int = 0
     structure: tuple[int, int] = (0, 0)
@@ -85,7 +89,7 @@ class Commit:
     def holds(self, file: Any) -> bool:
         """Whether the committed values are in an open file, as they were written."""
         return all(
-            checksum_of(file[name], self.samples if "time" in file[name].dimensions else self.events) == was
+            checksum_of(file[name], self.lengths[file[name].dimensions[0]]) == was
             for name, was in self.checksums.items()
         )
 
@@ -152,12 +156,12 @@ def intact(file: Any, commits: list[Commit], path: Path) -> Commit:
         return newest
     point = Checkpoint.newest(path, str(getattr(file, "run", "")))
     for commit in (*commits[1:], *([] if point is None else [point.commit])):
-        if commit.samples and commit.holds(file):
+        if commit.lengths.get("time") and commit.holds(file):
             log.warning(
                 "%s is damaged after %d of its %d samples: the rest is left out",
                 path,
-                commit.samples,
-                newest.samples,
+                commit.lengths["time"],
+                newest.lengths["time"],
             )
             return commit
     raise ValueError("its values have been altered")
@@ -180,16 +184,24 @@ def _constants(file: Any) -> int:
     """Checksum of all values that are there from the first."""
     found = 0
     for name, variable in file.variables.items():
-        if not {"time", "event"} & set(variable.dimensions) and name not in (RECORDS, *COUNTS):
+        if not {*COUNTS} & set(variable.dimensions) and name not in (RECORDS, *COUNTS.values()):
             found = _checksum(variable[...], found)
     return checksum_of(file["time"], file["time"].size, found) if "time" in file.variables else found
+
+
+def with_lengths(fields: dict[str, Any]) -> dict[str, Any]:
+    """Fields of a commit or a checkpoint, of which older versions counted samples and events by themselves."""
+    if "lengths" in fields:
+        return fields
+    lengths = {"time": fields.pop("samples"), "event": fields.pop("events")}
+    return {**fields, "lengths": lengths}
 
 
 def _read(text: bytes) -> Commit | None:
     try:
         if int(text[:8], 16) != zlib.crc32(text[8:].rstrip()):
             return None
-        fields = json.loads(text[8:])
+        fields = with_lengths(json.loads(text[8:]))
         return Commit(**{**fields, "structure": tuple(fields["structure"])})
     except (ValueError, TypeError, KeyError):
         return None

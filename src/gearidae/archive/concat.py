@@ -15,6 +15,7 @@ from gearidae.archive.dataset import dimension_names
 from gearidae.archive.exposures import exposure_coordinates
 from gearidae.archive.joint import history_of, part_name, software_of
 from gearidae.archive.keep import kept_in
+from gearidae.archive.rows import rows_from
 from gearidae.archive.select import run_value, runs, scene_of, swept_dims
 from gearidae.archive.single import single_run
 from gearidae.archive.stack import Axis, stack
@@ -28,7 +29,7 @@ from gearidae.archive.variables import (
     VERDICT,
 )
 from gearidae.errors import SceneError
-from gearidae.records import Events, Solution, Statistics
+from gearidae.records import ROWS, Solution, Statistics
 from gearidae.scene import Scene, describe_keys
 from gearidae.scene.differences import first_difference
 from gearidae.scene.keys import scene_value
@@ -263,21 +264,18 @@ def _refuse_other_samples(found: Sequence[_Run]) -> None:
 def _solution(run: xr.Dataset) -> Solution:
     """Turn a single run's dataset back into what it was made from, as far as `stack` needs it."""
     samples = {str(n): each.values for n, each in run.data_vars.items() if each.dims == ("time",)}
-    events: dict[str, Any] = {name: np.empty(0) for name in ("time", "kind", "pair", "flank", "gap_rate")}
-    if "event" in run.dims:
-        more = ("asperity",) if "event_asperity" in run else ()
-        events = {name: run[f"event_{name}"].values for name in (*events, *more)}
+    rows: dict[str, Any] = {kind.field: rows_from(run, kind) for kind in ROWS}
     numbers = {name: _number(run, name) for name in RUN if name not in ("status", "message")}
     statistics = Statistics(**numbers, skipped=json.loads(run.attrs.get("skipped", "{}")))
     reached = run["reached"] if "reached" in run else run.attrs["t_end"]
     return Solution(
         run["time"].values if "time" in run.dims else np.empty(0),
         samples,
-        Events(**events),
-        statistics,
-        run.attrs["status"],
-        run.attrs["message"],
-        float(reached),
+        statistics=statistics,
+        status=run.attrs["status"],
+        message=run.attrs["message"],
+        reached=float(reached),
+        **rows,
     )
 
 

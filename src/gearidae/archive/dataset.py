@@ -11,18 +11,16 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gearidae.archive.asperity_events import tooth_of
 from gearidae.archive.end_state import end_state_attributes
 from gearidae.archive.exposures import exposure_coordinates, exposure_variables
 from gearidae.archive.keep import EVERYTHING, Keep
 from gearidae.archive.provenance import provenance, surface_regimes
+from gearidae.archive.rows import DIMS, row_variables
 from gearidae.archive.sample_table import SampleTable
 from gearidae.archive.totals import total_variables
 from gearidae.archive.variables import (
     CONTACT,
-    EVENTS,
     OF_SWEPT_RUN,
-    POPULATION_EVENTS,
     RUN,
     SAM_FRACTION,
     SAMPLES,
@@ -32,13 +30,13 @@ from gearidae.archive.variables import (
 )
 from gearidae.errors import SceneError
 from gearidae.populations.flanks import flanks_digest, flanks_of
-from gearidae.records import Solution
+from gearidae.records import ROWS, Solution
 from gearidae.scene import Scene, describe_key
 from gearidae.scene.combinations import bodies_reason
 from gearidae.scene.sampled import columns_of
 
 _COUNTERS = tuple(name for name, variable in RUN.items() if variable.dtype is np.int64)
-_RESERVED = {*by_name(), "event", "scene", "coordinates"}
+_RESERVED = {*by_name(), *DIMS, "scene", "coordinates"}
 
 
 def to_dataset(scene: Scene, solution: Solution) -> xr.Dataset:
@@ -54,14 +52,16 @@ def to_dataset(scene: Scene, solution: Solution) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        Samples along ``time``, events along ``event``, scalar coordinate ``sam_fraction``, energy balance and extremes
-        without a dimension; provenance, scene, solver statistics and status as attributes. Everything in SI units.
+        Samples along ``time``, events along ``event``, passages along ``passage``, scalar coordinate
+        ``sam_fraction``, energy balance and extremes without a dimension; provenance, scene, solver statistics and
+        status as attributes. Everything in SI units.
     """
     fraction = scene.coating.sam_fraction
     variables: dict[Hashable, Any] = {
         name: (("time",), _samples(solution, name), SAMPLES[name].attributes) for name in columns_of(scene)
     }
-    variables |= _event_variables([scene], [solution], np.array([fraction]))
+    for kind in ROWS:
+        variables |= row_variables(kind, [scene], [solution])
     variables["reached"] = ((), reached(solution), OF_SWEPT_RUN["reached"].attributes)
     variables |= total_variables(scene, [scene], [solution])
     exposures = exposure_variables(scene, [scene], [solution])
@@ -146,9 +146,9 @@ def combine(
     -------
     xarray.Dataset
         As `to_dataset`, with one dimension per swept key in front of ``time``. Samples that a run did not
-        reach are NaN. Events are ragged and therefore lie on one flat ``event`` dimension, labelled by
-        ``event_<dimension>``. Scene, status, solver statistics and energy balance are variables along the swept
-        dimensions, the statistics' totals attributes.
+        reach are NaN. Events and passages are ragged and therefore lie on a flat dimension each, labelled by
+        ``event_<dimension>`` and ``passage_<dimension>``. Scene, status, solver statistics and energy balance are
+        variables along the swept dimensions, the statistics' totals attributes.
     """
     names = dimension_names(swept)
     dims = tuple(names.values())
@@ -162,8 +162,9 @@ def combine(
         name: ((*dims, "time"), table.reshape(*shape, -1), SAMPLES[name].attributes)
         for name, table in samples.columns().items()
     }
-    if keep.events:
-        variables |= _events_of_sweep(labels, scenes, solutions)
+    for kind in ROWS:
+        if keep.holds_rows(kind):
+            variables |= row_variables(kind, scenes, solutions, labels)
     of_runs = _of_runs(scenes, solutions, keep)
     totals = total_variables(scene, scenes, solutions, dims, shape)
     for name, (variable, values) in of_runs.items():
@@ -225,24 +226,6 @@ def _of_runs(
     return found
 
 
-def _events_of_sweep(
-    labels: Mapping[str, xr.Variable], scenes: Sequence[Scene], solutions: Sequence[Solution]
-) -> dict[Hashable, Any]:
-    """Events of all runs, one after the other, with the labels of their runs."""
-    variables = _event_variables(scenes, solutions, np.array([each.coating.sam_fraction for each in scenes]))
-    counts = [len(solution.events) for solution in solutions]
-    shape = tuple(label.size for label in labels.values())
-    for position, (dim, label) in enumerate(labels.items()):
-        if dim != "sam_fraction":
-            index = np.unravel_index(np.arange(len(solutions)), shape)[position]
-            attributes = {
-                "long_name": f"{dim} of the run the event belongs to",
-                "units": label.attrs["units"],
-            }
-            variables[f"event_{dim}"] = (("event",), np.repeat(label.values[index], counts), attributes)
-    return variables
-
-
 def dimension_names(keys: Sequence[str] | Mapping[str, Any]) -> dict[str, str]:
     """Name the dimension of every swept key.
 
@@ -295,29 +278,6 @@ def _key_attributes(key: str) -> dict[str, Any]:
     except SceneError:  # a whole table
         return {"long_name": key, "units": "1"}
     return {"long_name": f"{key}: {info.description}", "units": info.unit or "1"}
-
-
-def _event_variables(
-    scenes: Sequence[Scene], solutions: Sequence[Solution], fractions: NDArray[np.float64]
-) -> dict[Hashable, Any]:
-    """Events of all runs, one after the other."""
-    joined: dict[str, NDArray[Any]] = {
-        f"event_{name}": np.concatenate([getattr(solution.events, name) for solution in solutions])
-        for name in ("time", "kind", "pair", "flank", "gap_rate")
-    }
-    joined["event_sam_fraction"] = np.repeat(fractions, [len(solution.events) for solution in solutions])
-    catalogue = {**EVENTS}
-    if any(scene.contact.is_discrete for scene in scenes):
-        catalogue |= POPULATION_EVENTS
-        events = [solution.events for solution in solutions]
-        teeth = [1 if scene.gears is None else scene.gears.pinion_teeth for scene in scenes]
-        of_teeth = [tooth_of(z, each.pair, each.flank) for z, each in zip(teeth, events, strict=True)]
-        joined["event_tooth"] = np.concatenate(of_teeth)
-        joined["event_asperity"] = np.concatenate([each.asperity for each in events])
-    return {
-        name: (("event",), values.astype(catalogue[name].dtype, copy=False), catalogue[name].attributes)
-        for name, values in joined.items()
-    }
 
 
 def _totals(solutions: Sequence[Solution]) -> dict[str, Any]:

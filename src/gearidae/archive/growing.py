@@ -1,11 +1,11 @@
 """Archives that grow while a run goes on: readable at any time, by anyone, whatever happens to the run.
 
-The file is in netCDF's classic format and made once, with room for every sample and for many events, and filled with
-what stands for nothing; where events run out of room, a larger file takes its place. Each block of output is written to
-its place, then a record of what is committed, with checksums (`gearidae.archive.commits`). So there is no instant at
-which the file could not be read, no lock lies on it, and the memory needed does not depend on the run's length. The
-state to go on from is kept beside it (`gearidae.archive.checkpoint`). When the run has ended, `finish` rewrites the
-file as any other archive.
+The file is in netCDF's classic format and made once, with room for every sample and for many events and passages, and
+filled with what stands for nothing; where these run out of room, a larger file takes its place. Each block of output is
+written to its place, then a record of what is committed, with checksums (`gearidae.archive.commits`). So there is no
+instant at which the file could not be read, no lock lies on it, and the memory needed does not depend on the run's
+length. The state to go on from is kept beside it (`gearidae.archive.checkpoint`). When the run has ended, `finish`
+rewrites the file as any other archive.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import json
 import logging
 import secrets
 import time
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -24,26 +25,23 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gearidae.archive.asperity_events import teeth_in, tooth_of
 from gearidae.archive.checkpoint import Checkpoint, drop_checkpoints
 from gearidae.archive.commits import COPIED, COUNTS, LENGTH, RECORDS, Commit, check_bytes
 from gearidae.archive.definition import define
 from gearidae.archive.disk import disk_errors, sync
 from gearidae.archive.end_state import packed_state
 from gearidae.archive.library import LIBRARY, close, opened
+from gearidae.archive.rows import archived, kinds_in, teeth_in
 from gearidae.archive.totals import total_variables
-from gearidae.archive.variables import EVENTS
-from gearidae.records import COUNTERS, Block, EventColumn, Statistics, sample_times
+from gearidae.records import COUNTERS, Block, Rows, Statistics, sample_times
 from gearidae.scene import Scene
 
-EVENT_ROOM = 65_536
-"""Events to make room for, twice as many whenever they run out: along a dimension without limit each takes longer."""
+ROOM: Final = {"event": 65_536, "passage": 4096}
+"""Rows to make room for, twice as many whenever they run out: along a dimension without limit each takes longer."""
 CHECKPOINT_SECONDS = 1.0
 """Least wall time between checkpoints [s]: each waits for the disk."""
-_EVENT_COLUMNS = ("event_time", "event_kind", "event_pair", "event_flank", "event_gap_rate")
 _RUN: Final = "run"
 """Attribute by which a run's checkpoint is found."""
-
 
 log = logging.getLogger(__name__)
 
@@ -59,12 +57,12 @@ class GrowingArchive:
     path : Path
         The file, made by `create`.
     template : xarray.Dataset
-        What the run's dataset will be, without samples and events.
+        What the run's dataset will be, without samples and rows.
 
     Attributes
     ----------
-    samples, events : int
-        How many are committed.
+    lengths : dict of str to int
+        How much is committed along each dimension that grows.
 
     Raises
     ------
@@ -80,10 +78,11 @@ class GrowingArchive:
             str(name) for name, variable in template.data_vars.items() if variable.dims == ("time",)
         ]
         self._fraction = float(template["sam_fraction"])
-        self._has_asperities = "event_asperity" in template
+        self._kinds = tuple(kinds_in(template))
         self._teeth = teeth_in(template.attrs)
         self._checkpointed = time.monotonic()
-        self.samples = self.events = 0
+        self._nothing = {dim: 0 for dim in COUNTS if dim in template.dims}
+        self.lengths = self._nothing
         self._commits = Commit()
         with disk_errors():
             self._open()
@@ -97,7 +96,7 @@ class GrowingArchive:
         path : Path
             The file to make.
         template : xarray.Dataset
-            What the run's dataset will be, without samples and events.
+            What the run's dataset will be, without samples and rows.
         samples : int
             Number of samples.
         duration : float
@@ -111,7 +110,7 @@ class GrowingArchive:
         part = _part(path)
         with disk_errors():
             try:
-                _lay_out(part, template, secrets.token_hex(16), samples, EVENT_ROOM)
+                _lay_out(part, template, secrets.token_hex(16), {"time": samples, **ROOM})
                 _write_times(part, samples, float(template.attrs.get("start_time", 0.0)), duration)
                 with opened(part, "a") as file:
                     Commit.first(file, part).write(file)
@@ -149,9 +148,9 @@ class GrowingArchive:
             with LIBRARY:
                 if not commit.holds(self._file):
                     raise OSError("it is damaged before the checkpoint: begin anew with --overwrite")
-            if point is None and self._commits.samples:
+            if point is None and any(self.lengths.values()):
                 log.warning("%s has no whole checkpoint: the run begins anew", self.path)
-            self.samples, self.events = commit.samples, commit.events
+            self.lengths = {**self._nothing, **commit.lengths}
             self._commits = replace(self._commits, checksums=commit.checksums)
             self._commit()
         return point
@@ -181,8 +180,7 @@ class GrowingArchive:
             if block.checkpoint is not None and due:
                 sync(self.path)
                 point = Checkpoint(
-                    self.samples,
-                    self.events,
+                    self.lengths,
                     block.time,
                     wall_time,
                     statistics,
@@ -212,7 +210,7 @@ class GrowingArchive:
         Parameters
         ----------
         template : xarray.Dataset
-            The run's dataset with its final attributes, without samples and events.
+            The run's dataset with its final attributes, without samples and rows.
 
         Raises
         ------
@@ -236,7 +234,8 @@ class GrowingArchive:
             self._file = netCDF4.Dataset(self.path, "r+", keepweakref=True)
             self._file.set_auto_maskandscale(False)
             self._run = str(getattr(self._file, _RUN, ""))
-            if missing := {*self._columns, *_EVENT_COLUMNS, *COUNTS, RECORDS} - set(self._file.variables):
+            counts = (COUNTS[dim] for dim in self._nothing)
+            if missing := {*self._columns, *counts, RECORDS, *self._row_names()} - set(self._file.variables):
                 raise OSError(f"{self.path.name} has no variable {min(missing)}")
         try:
             self._commits = check_bytes(self.path)[0]
@@ -244,22 +243,24 @@ class GrowingArchive:
             raise OSError(str(error)) from error
 
     def _append(self, block: Block) -> None:
-        if self.events + len(block.events) > len(self._file.dimensions["event"]):
-            self._make_room(self.events + len(block.events))
+        tables = {kind: getattr(block, kind.field) for kind in self._kinds}
+        after = {"time": self.lengths["time"] + len(block.rows)}
+        after |= {kind.dim: self.lengths[kind.dim] + len(table) for kind, table in tables.items()}
+        if any(after[kind.dim] > len(self._file.dimensions[kind.dim]) for kind in tables):
+            self._make_room(after)
         for column, name in enumerate(self._columns):
-            self._write(name, self.samples, block.rows[:, column])
-        for column, name in enumerate(_EVENT_COLUMNS):
-            self._write(name, self.events, block.events[:, column].astype(EVENTS[name].dtype))
-        if self._has_asperities:
-            self._write("event_asperity", self.events, block.events[:, EventColumn.ASPERITY].astype(np.int64))
-            teeth = tooth_of(
-                self._teeth, block.events[:, EventColumn.PAIR], block.events[:, EventColumn.FLANK]
-            )
-            self._write("event_tooth", self.events, teeth)
-        self._write("event_sam_fraction", self.events, np.full(len(block.events), self._fraction))
-        self.samples += len(block.rows)
-        self.events += len(block.events)
+            self._write(name, self.lengths["time"], block.rows[:, column])
+        for kind, table in tables.items():
+            values = archived(kind.of_table(table), self._teeth, self._fraction)
+            for name in self._row_names(kind):
+                self._write(name, self.lengths[kind.dim], values[name])
+        self.lengths = after
         self._commit()
+
+    def _row_names(self, *kinds: type[Rows]) -> list[str]:
+        """Variables of some kinds of rows, or of all."""
+        dims = [(kind.dim,) for kind in kinds or self._kinds]
+        return [str(name) for name, each in self._template.data_vars.items() if each.dims in dims]
 
     def _write(self, name: str, first: int, values: NDArray[Any]) -> None:
         if values.size:
@@ -272,32 +273,31 @@ class GrowingArchive:
 
     def _commit(self) -> None:
         """Say what is there; done after it is."""
-        counts = (self.samples, self.events)
-        self._commits = replace(
-            self._commits, number=self._commits.number + 1, samples=counts[0], events=counts[1]
-        )
+        self._commits = replace(self._commits, number=self._commits.number + 1, lengths=self.lengths)
         with LIBRARY:
             self._file.sync()
             self._commits.write(self._file)
-            for name, count in zip(COUNTS, counts, strict=True):
-                self._file[name][...] = count
+            for dim, count in self.lengths.items():
+                self._file[COUNTS[dim]][...] = count
             self._file.sync()
 
-    def _make_room(self, events: int) -> None:
-        """Move to a file with room for more events, which takes the old one's place when it is complete."""
-        times, room = (len(self._file.dimensions[name]) for name in ("time", "event"))
-        while room < events:
-            room *= 2
-        part, committed = _part(self.path), {"time": self.samples, "event": self.events}
+    def _make_room(self, wanted: Mapping[str, int]) -> None:
+        """Move to a file with room for more rows, which takes the old one's place when it is complete."""
+        room = {dim: len(self._file.dimensions[dim]) for dim in self.lengths}
+        times = room["time"]
+        for kind in self._kinds:
+            while room[kind.dim] < wanted[kind.dim]:
+                room[kind.dim] *= 2
+        part, counts = _part(self.path), [COUNTS[dim] for dim in self.lengths]
         try:
-            _lay_out(part, self._template, self._run, times, room)
+            _lay_out(part, self._template, self._run, room)
             with opened(part, "a") as file:
                 for name, variable in file.variables.items():
-                    if {*variable.dimensions} & {*committed}:
+                    if {*variable.dimensions} & {*self.lengths}:
                         self._copy(
-                            name, variable, times if name == "time" else committed[variable.dimensions[0]]
+                            name, variable, times if name == "time" else self.lengths[variable.dimensions[0]]
                         )
-                    elif name in COUNTS:
+                    elif name in counts:
                         variable[...] = self._file[name][...]
                 file.sync()
                 replace(self._commits, structure=Commit.first(file, part).structure).write(file)
@@ -312,11 +312,11 @@ class GrowingArchive:
         sync(self.path.parent)
 
     def _compact(self, template: xr.Dataset, part: Path) -> None:
-        define(template, part, {"time": self.samples, "event": self.events})
+        define(template, part, self.lengths)
         with opened(part, "a") as file:
             file.set_auto_maskandscale(False)
             for name, variable in file.variables.items():
-                if set(variable.dimensions) & {"time", "event"} and variable.size:
+                if set(variable.dimensions) & {*self.lengths} and variable.size:
                     self._copy(name, variable, len(variable))
         sync(part)
 
@@ -333,7 +333,7 @@ class GrowingArchive:
 
 def is_growing(ds: xr.Dataset) -> bool:
     """Whether a dataset has been read from the archive of a run that is not at its end."""
-    return all(name in ds.variables for name in COUNTS)
+    return COUNTS["time"] in ds.variables
 
 
 def trimmed(ds: xr.Dataset, path: Path, commit: Commit | None, *, running: bool) -> xr.Dataset:
@@ -350,10 +350,12 @@ def trimmed(ds: xr.Dataset, path: Path, commit: Commit | None, *, running: bool)
     running : bool
         Whether a process was writing it.
     """
-    samples, events = (max(int(ds[name].values.item()), 0) for name in COUNTS)
+    grown = {dim: name for dim, name in COUNTS.items() if name in ds}
+    lengths = {dim: max(int(ds[name].values.item()), 0) for dim, name in grown.items()}
     if commit is not None:
-        samples, events = commit.samples, commit.events
-    cut = ds.isel(time=slice(samples), event=slice(events)).drop_vars([*COUNTS, RECORDS], errors="ignore")
+        lengths = {**lengths, **commit.lengths}
+    cut = ds.isel({dim: slice(length) for dim, length in lengths.items()})
+    cut = cut.drop_vars([*grown.values(), RECORDS], errors="ignore")
     point = Checkpoint.newest(path, str(cut.attrs.pop(_RUN, "")))
     remedy = "" if running else RESUMABLE
     cut.attrs |= {
@@ -375,13 +377,14 @@ def trimmed(ds: xr.Dataset, path: Path, commit: Commit | None, *, running: bool)
     return cut
 
 
-def _lay_out(path: Path, template: xr.Dataset, run: str, samples: int, room: int) -> None:
-    """Write the file's structure, filled with what stands for nothing."""
+def _lay_out(path: Path, template: xr.Dataset, run: str, room: Mapping[str, int]) -> None:
+    """Write the file's structure with room along dimensions, filled with what stands for nothing."""
     path.unlink(missing_ok=True)
-    grown = template.assign({name: ((), np.int64(0), {"units": "1"}) for name in COUNTS})
+    sizes = {dim: max(size, 1) for dim, size in room.items() if dim in template.dims}
+    grown = template.assign({COUNTS[dim]: ((), np.int64(0), {"units": "1"}) for dim in sizes})
     grown[RECORDS] = ("record_byte", np.full(2 * LENGTH, ord(" "), np.uint8))
     # a length of 0 is one without limit to netCDF
-    define(grown.assign_attrs({_RUN: run}), path, {"time": max(samples, 1), "event": room}, in_place=True)
+    define(grown.assign_attrs({_RUN: run}), path, sizes, in_place=True)
 
 
 def _write_times(path: Path, total: int, begin: float, duration: float) -> None:

@@ -16,20 +16,31 @@ from gearidae.archive.variables import (
     EVENTS,
     EXPOSURES,
     OF_SWEPT_RUN,
+    PASSAGES,
     RUN,
     STANDSTILL_LIST,
     VERDICT,
     extreme_names,
 )
 from gearidae.errors import SceneError
-from gearidae.records import Events, Solution
+from gearidae.records import ROWS, Rows, Solution
 from gearidae.scene.group import did_you_mean, shorten
 from gearidae.scene.sampled import columns_of
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
-GROUPS = ("verdict", "extremes", "statistics", "energy_balance", "scene", "exposures", "samples", "events")
+GROUPS = (
+    "verdict",
+    "extremes",
+    "statistics",
+    "energy_balance",
+    "scene",
+    "exposures",
+    "passages",
+    "samples",
+    "events",
+)
 """Names that stand for several variables, or for one, from the smallest to the largest."""
 _ALWAYS = ("status", "message", "wall_time", *VERDICT)
 _IN_WORDS = (
@@ -67,13 +78,12 @@ class Keep:
         """List the sampled columns that are kept."""
         return tuple(name for name in columns_of(scene) if self.holds(name))
 
-    @property
-    def events(self) -> bool:
-        """Whether events are kept."""
-        return self.holds("event_time")
+    def holds_rows(self, kind: type[Rows]) -> bool:
+        """Whether rows of a kind are kept."""
+        return self.holds(f"{kind.dim}_time")
 
     def thinned(self, solution: Solution) -> Solution:
-        """Return a run without the samples and the events that are not kept, and without its last state."""
+        """Return a run without the samples and the rows that are not kept, and without its last state."""
         if self.names is None:
             return solution
         samples = {name: values for name, values in solution.samples.items() if self.holds(name)}
@@ -81,14 +91,13 @@ class Keep:
         reached = solution.reached
         if reached is None and len(solution.time):
             reached = float(solution.time[-1])
-        events = solution.events if self.events else _NO_EVENTS
+        gone: dict[str, Any] = {kind.field: kind.none() for kind in ROWS if not self.holds_rows(kind)}
         # the state at the end, of which a dataset of several runs has none, is most of what is left
-        return replace(solution, time=time, samples=samples, events=events, reached=reached, checkpoint=None)
+        return replace(solution, time=time, samples=samples, reached=reached, checkpoint=None, **gone)
 
 
 EVERYTHING = Keep()
 _NO_TIMES = np.empty(0)
-_NO_EVENTS = Events(_NO_TIMES, np.empty(0, np.int8), np.empty(0, np.int64), np.empty(0, np.int8), _NO_TIMES)
 """Shared by all runs that keep none."""
 
 
@@ -122,6 +131,7 @@ def read_keep(keep: Iterable[str] | str | None, scene: Scene) -> Keep:
         "energy_balance": (*ENERGY_BALANCE, *BESIDE_BALANCE),
         "scene": ("scene",),
         "exposures": tuple(EXPOSURES),
+        **({"passages": tuple(PASSAGES)} if scene.roller is None else {}),
         "samples": columns_of(scene),
         "events": (*EVENTS, "impacts"),
     }

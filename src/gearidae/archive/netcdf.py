@@ -21,9 +21,9 @@ from gearidae.archive.library import await_lock, check_size, uninterrupted
 from gearidae.archive.lock import is_locked
 from gearidae.archive.older import converted
 from gearidae.archive.provenance import SCHEMA_VERSION
+from gearidae.archive.rows import kinds_in, needed
 from gearidae.archive.target import as_path, whole_file
 from gearidae.archive.time_index import LARGEST_IN_MEMORY, in_memory, with_times
-from gearidae.archive.variables import EVENTS
 from gearidae.errors import SceneError
 from gearidae.records import GEAR_SAMPLES, ROLLER_SAMPLES, sampled_columns
 from gearidae.scene import Scene
@@ -187,15 +187,15 @@ def _expected(ds: xr.Dataset, scene: dict[str, Any]) -> tuple[str, ...]:
     """Variables that an archive of any version has at least."""
     later = {one.name for one in (*GEAR_SAMPLES, *ROLLER_SAMPLES) if one.since}
     sampled = tuple(name for name in sampled_columns(roller="roller" in scene) if name not in later)
-    events = tuple(EVENTS) if "event" in ds.dims else ()  # a user may drop them
+    rows = tuple(name for kind in kinds_in(ds) for name in needed(kind))  # a user may drop them
     if "keep" not in ds.attrs:
-        return ("time", *sampled, *events)
+        return ("time", *sampled, *rows)
     try:
         keep = kept_in(ds.attrs, Scene.from_dict(scene))
     except SceneError as error:
         raise SceneError("archive", ds.encoding.get("source", ""), f"is damaged: {error}") from None
     some = tuple(name for name in sampled if keep.holds(name))
-    return (*(("time",) if some else ()), *some, *(events if keep.events else ()), "status", *_JUDGED)
+    return (*(("time",) if some else ()), *some, *filter(keep.holds, rows), "status", *_JUDGED)
 
 
 def _encoding(ds: xr.Dataset) -> dict[str, dict[str, Any]]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -13,7 +12,8 @@ import xarray as xr
 from gearidae.archive.attributes import complete_scene
 from gearidae.archive.dataset import dimension_names
 from gearidae.archive.pieces import reached
-from gearidae.archive.variables import EXTREMES, PLACES, SAMPLES
+from gearidae.archive.rows import LABELS, kinds_in, own_rows, row_places
+from gearidae.archive.variables import EXTREMES, SAMPLES
 from gearidae.errors import SceneError
 from gearidae.records import sampled_columns
 from gearidae.scene import Scene
@@ -63,7 +63,7 @@ def swept_dims(ds: xr.Dataset) -> tuple[str, ...]:
 
 
 def runs(ds: xr.Dataset) -> Iterator[tuple[dict[str, Any], xr.Dataset]]:
-    """Go through the runs of a dataset, each with its own events only.
+    """Go through the runs of a dataset, each with its own events and passages only.
 
     Parameters
     ----------
@@ -78,11 +78,13 @@ def runs(ds: xr.Dataset) -> Iterator[tuple[dict[str, Any], xr.Dataset]]:
         The run, without swept dimensions.
     """
     dims = swept_dims(ds)
-    ds = own_events(ds)
-    events = _events_of_runs(ds, dims)
+    ds = own_rows(ds)
+    rows = row_places(ds, dims)
+    all_told = all(kind.dim in rows for kind in kinds_in(ds))
     for number, place in enumerate(np.ndindex(*(ds.sizes[dim] for dim in dims))):
         run = ds.isel(dict(zip(dims, place, strict=True)))
-        run = own_events(run) if events is None else run.isel(event=events[number])
+        run = run.isel({dim: each[number] for dim, each in rows.items()})
+        run = run if all_told else own_rows(run)
         yield {dim: run[dim].values.item() for dim in dims}, run
 
 
@@ -144,7 +146,7 @@ def refuse_other_labels(ds: xr.Dataset) -> None:
     scene = scene_of(ds)
     swept = {} if "scene" in ds.variables else json.loads(ds.attrs.get("swept", "{}"))
     keys = {key: value for key, value in _numbers_in(scene, "") if key not in swept}
-    others = {"time", "event", *PLACES, *dimension_names(swept).values()}
+    others = {*LABELS, *dimension_names(swept).values()}
     for key, name in dimension_names(list(keys)).items():
         label = ds.coords.get(name)
         if label is None or label.dtype.kind not in "fiu" or name in others:
@@ -195,42 +197,3 @@ def motion_samples(run: xr.Dataset) -> int:
         if samples and not np.isfinite(run[name].variable[samples - 1].values):
             samples = min(samples, reached(run[name]))
     return samples
-
-
-def own_events(ds: xr.Dataset) -> xr.Dataset:
-    """Drop the events of other runs, which xarray leaves behind when runs are picked from a sweep.
-
-    Parameters
-    ----------
-    ds : xarray.Dataset
-        Runs of a sweep, or one of them.
-
-    Returns
-    -------
-    xarray.Dataset
-        With the events only that carry the labels of its runs.
-    """
-    if "swept" not in ds.attrs or "event" not in ds.dims:
-        return ds
-    own = np.ones(ds.sizes["event"], dtype=bool)
-    for name in map(str, ds.coords):
-        if name not in ("time", "event", *PLACES) and f"event_{name}" in ds.variables and ds[name].ndim < 2:
-            own &= np.isin(ds[f"event_{name}"].values, ds[name].values)
-    return ds if own.all() else ds.isel(event=own)
-
-
-def _events_of_runs(ds: xr.Dataset, dims: tuple[str, ...]) -> list[slice | np.ndarray[Any, Any]] | None:
-    """Places of each run's events, found in one pass; None where labels do not tell the runs apart."""
-    if "event" not in ds.dims or not dims or any(f"event_{dim}" not in ds.variables for dim in dims):
-        return None
-    indexes = [ds.get_index(dim) for dim in dims]
-    if not all(index.is_unique for index in indexes):
-        return None
-    places = [index.get_indexer(ds[f"event_{dim}"].values) for index, dim in zip(indexes, dims, strict=True)]
-    shape = tuple(ds.sizes[dim] for dim in dims)
-    number = np.ravel_multi_index(places, shape) if len(places[0]) else np.empty(0, dtype=np.int64)
-    order = np.argsort(number, kind="stable")
-    bounds = np.searchsorted(number[order], np.arange(int(np.prod(shape)) + 1))
-    if np.array_equal(order, np.arange(len(order))):
-        return [slice(first, last) for first, last in pairwise(bounds)]
-    return [order[first:last] for first, last in pairwise(bounds)]

@@ -7,8 +7,9 @@ from typing import Any
 import xarray as xr
 
 from gearidae.archive.provenance import provenance, surface_regimes
-from gearidae.archive.select import own_events, run_scene, swept_dims
-from gearidae.archive.variables import OF_SWEPT_RUN, PLACES, RUN, SAM_FRACTION
+from gearidae.archive.rows import DIMS, LABELS, own_rows
+from gearidae.archive.select import run_scene, swept_dims
+from gearidae.archive.variables import OF_SWEPT_RUN, RUN, SAM_FRACTION
 
 
 def single_run(ds: xr.Dataset) -> xr.Dataset:
@@ -22,7 +23,7 @@ def single_run(ds: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        With the scene, the statistics and the events of that run alone, where `gearidae.simulate`
+        With the scene, the statistics, the events and the passages of that run alone, where `gearidae.simulate`
         puts them.
 
     Raises
@@ -33,11 +34,11 @@ def single_run(ds: xr.Dataset) -> xr.Dataset:
     if "swept" not in ds.attrs:
         return ds
     scene = run_scene(ds)
-    ds = own_events(ds.squeeze(swept_dims(ds)))
+    ds = own_rows(ds.squeeze(swept_dims(ds)))
     found: dict[str, Any] = {name: ds[name].values.item() for name in (*RUN, *OF_SWEPT_RUN) if name in ds}
     found.pop("reached", None)
-    swept = [str(name) for name in ds.coords if name not in ("time", "event", "sam_fraction", *PLACES)]
-    gone = {*found, *swept, *(f"event_{name}" for name in swept)}
+    swept = [str(name) for name in ds.coords if name not in (*LABELS, "sam_fraction")]
+    gone = {*found, *swept, *(f"{dim}_{name}" for dim in DIMS for name in swept)}
     single = ds.drop_vars([name for name in gone if name in ds.variables])
     single["sam_fraction"] = ((), scene.coating.sam_fraction, SAM_FRACTION.attributes)
     of_sweep = ("history", "source", "date_created", "product_version", "backend", "method", "keep")

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from gearidae.archive.dataset import combine, dimension_names, key_labels
 from gearidae.archive.keep import EVERYTHING, Keep
 from gearidae.archive.provenance import provenance
+from gearidae.archive.rows import DIMS
 from gearidae.archive.sample_table import SampleTable
 from gearidae.records import Solution
 
@@ -58,7 +59,7 @@ def stack(
         return ds
     names = dimension_names([key for axis in axes for key in axis])
     renamed = {short: names[key] for key, short in dimension_names(leaders).items() if short != names[key]}
-    labels = {f"event_{short}": f"event_{name}" for short, name in renamed.items()}
+    labels = {f"{dim}_{short}": f"{dim}_{name}" for dim in DIMS for short, name in renamed.items()}
     ds = ds.rename(renamed | {short: name for short, name in labels.items() if short in ds})
     for axis in axes:
         leader, *others = axis

@@ -1,19 +1,21 @@
-"""Datasets as pandas tables: time series and events."""
+"""Datasets as pandas tables: time series, events and passages."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from enum import IntEnum
 from typing import Any
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
-from gearidae.archive.select import own_events, swept_dims
-from gearidae.archive.variables import EVENTS, POPULATION_EVENTS
+from gearidae.archive.rows import own_rows
+from gearidae.archive.select import swept_dims
+from gearidae.archive.variables import ROW_VARIABLES
 from gearidae.errors import SceneError
-from gearidae.records import EventKind, Flank
+from gearidae.records import Rows
 
 LARGEST_TABLE = 2**31
 """Size of a table [bytes] above which it is refused unless more is allowed."""
@@ -67,38 +69,37 @@ def time_series(
     return pd.DataFrame({**labels, **values}, index=time)
 
 
-def event_table(ds: xr.Dataset) -> pd.DataFrame:
-    """Make a table of the events.
+def row_table(ds: xr.Dataset, kind: type[Rows]) -> pd.DataFrame:
+    """Make a table of the events or the passages.
 
     Parameters
     ----------
     ds : xarray.Dataset
         A single run or a sweep, or runs picked from one.
+    kind : type of Rows
+        `gearidae.records.Events` or `gearidae.records.Passages`.
 
     Returns
     -------
     pandas.DataFrame
-        A row for each event of these runs: the swept keys, ``time`` [s], ``kind`` and ``flank`` in words (as
-        categories), ``pair``, ``gap_rate`` [m/s] and ``sam_fraction``.
+        A row for each event or passage of these runs: the swept keys, ``sam_fraction``, ``time`` [s], and the other
+        variables without the dimension in front of their names; ``kind`` and ``flank`` in words (as categories).
 
     Raises
     ------
     SceneError
-        If the events have not been kept.
+        If they have not been kept.
     """
-    if "event" not in ds.dims:
-        raise SceneError("events", "(missing)", "have not been kept: sweep with keep=[..., 'events']")
-    ds = own_events(ds)
-    known = {**EVENTS, **POPULATION_EVENTS}
-    labels = [str(name) for name in ds.data_vars if str(name).startswith("event_") and name not in known]
-    columns: dict[str, Any] = {name.removeprefix("event_"): ds[name].values for name in labels}
-    columns["sam_fraction"] = ds["event_sam_fraction"].values
-    columns["time"] = ds["event_time"].values
-    columns["kind"] = _in_words(ds["event_kind"].values, EventKind)
-    columns["pair"] = ds["event_pair"].values
-    columns["flank"] = _in_words(ds["event_flank"].values, Flank)
-    columns["gap_rate"] = ds["event_gap_rate"].values
-    columns |= {name.removeprefix("event_"): ds[name].values for name in POPULATION_EVENTS if name in ds}
+    if kind.dim not in ds.dims:
+        advice = f"keep=[..., '{kind.field}']"
+        raise SceneError(kind.field, "(missing)", f"have not been kept: sweep with {advice}")
+    ds, known, prefix = own_rows(ds), ROW_VARIABLES[kind], f"{kind.dim}_"
+    labels = [str(name) for name in ds.data_vars if str(name).startswith(prefix) and name not in known]
+    columns: dict[str, Any] = {}
+    for name in (*labels, f"{prefix}sam_fraction", *(name for name in known if name in ds)):
+        flags = known[name].flags if name in known else None
+        values = ds[name].values
+        columns.setdefault(name.removeprefix(prefix), _in_words(values, flags) if flags else values)
     return pd.DataFrame(columns)
 
 
@@ -114,7 +115,7 @@ def run_labels(ds: xr.Dataset, dims: tuple[str, ...]) -> dict[str, Any]:
     return found
 
 
-def _in_words(values: np.ndarray[Any, Any], kinds: type[EventKind] | type[Flank]) -> pd.Categorical:
+def _in_words(values: np.ndarray[Any, Any], kinds: type[IntEnum]) -> pd.Categorical:
     """Give flags their names."""
     numbers = [kind.value for kind in kinds]
     words = [kind.name.lower() for kind in kinds]

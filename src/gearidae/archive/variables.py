@@ -24,7 +24,10 @@ from gearidae.records import (
     POPULATION_SAMPLES,
     ROLLER_SAMPLES,
     EventKind,
+    Events,
     Flank,
+    Rows,
+    passages,
 )
 from gearidae.records import extremes as records
 from gearidae.records.energy import ENERGY_NOW, ENERGY_SUMS, SLIDING
@@ -123,6 +126,13 @@ _EVENTS = (
         "rate of change of the pair's gap",
         comment="negative while it closes",
     ),
+    Variable(
+        "event_force",
+        ("event",),
+        "N",
+        "force of the pair along the line of action",
+        comment="at onsets and separations, positive where the flanks push each other apart; NaN elsewhere",
+    ),
     Variable("event_sam_fraction", ("event",), "1", "SAM fraction of the run the event belongs to"),
 )
 EVENTS: Mapping[str, Variable] = {variable.name: variable for variable in _EVENTS}
@@ -149,6 +159,38 @@ POPULATION_EVENTS: Mapping[str, Variable] = {
     )
 }
 """What events of a population have besides."""
+
+_SINCE_START = "from the start of the run, or of its chain of runs, to the mesh exit"
+
+
+def _of_passage(each: Quantity, name: str, meaning: str) -> Variable:
+    is_sum = each in (*passages.SUMS, *passages.CHANGES)
+    return Variable(
+        f"passage_{name}",
+        ("passage",),
+        each.unit.si,
+        meaning,
+        passages.Passages.columns[name].dtype,
+        Flank if name == "flank" else None,
+        _SINCE_START if is_sum else each.comment,
+    )
+
+
+_PASSAGES = (
+    *(
+        _of_passage(each, name, meaning)
+        for each in passages.COLUMNS
+        for name, meaning in (each.archive or {each.name: each.meaning}).items()
+    ),
+    Variable("passage_tooth", ("passage",), "1", "tooth of the pinion, counted from 0", np.int64),
+    Variable("passage_sam_fraction", ("passage",), "1", "SAM fraction of the run the passage belongs to"),
+)
+PASSAGES: Mapping[str, Variable] = {variable.name: variable for variable in _PASSAGES}
+ROW_VARIABLES: Final[Mapping[type[Rows], Mapping[str, Variable]]] = {
+    Events: {**EVENTS, **POPULATION_EVENTS},
+    passages.Passages: PASSAGES,
+}
+"""What rows of each kind have."""
 
 _RUN = (
     Variable("status", (), "1", "how the run ended", np.str_),
@@ -291,6 +333,7 @@ def by_name() -> dict[str, Variable]:
         **SAMPLES,
         **EVENTS,
         **POPULATION_EVENTS,
+        **PASSAGES,
         **RUN,
         **OF_SWEPT_RUN,
         **VERDICT,

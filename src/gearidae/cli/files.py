@@ -9,6 +9,7 @@ from pathlib import Path
 import xarray as xr
 
 import gearidae as gd
+from gearidae.archive.rows import DIMS
 from gearidae.archive.select import is_roller, scene_of, swept_dims
 from gearidae.archive.target import whole_file
 from gearidae.cli.codes import DONE
@@ -17,6 +18,7 @@ from gearidae.cli.output import say, show_rows
 from gearidae.cli.tables import show_outcomes, show_summary
 from gearidae.cli.validity_table import show_validity
 from gearidae.errors import SceneError
+from gearidae.records import ROWS, Events
 from gearidae.runs.kept_validity import validity_of
 from gearidae.scene.coating import MATERIAL_NAMES
 from gearidae.scene.validity_row import ATTRIBUTE, contact_subject
@@ -129,7 +131,9 @@ def _description(archive: Path, ds: xr.Dataset) -> Iterator[tuple[str, str, str]
     samples = ds.sizes.get("time", 0)
     span = f"{samples} samples, 0 to {float(ds['time'][-1]):g} s" if samples else "no samples"
     yield "time", span, f"requested {attributes['t_end']:g} s at rtol {attributes['rtol']:g}"
-    yield "events", str(ds.sizes["event"]) if "event" in ds.sizes else "not kept", ""
+    for kind in ROWS:
+        if kind is Events or kind.dim in ds.sizes:
+            yield kind.field, str(ds.sizes.get(kind.dim, "not kept")), ""
     for name in ("steps", "residual_evaluations", "jacobian_evaluations", "restarts"):
         yield name.replace("_", " "), str(attributes[name]), ""
     yield "wall time", f"{attributes['wall_time']:.3g} s", f"backend {attributes['backend']}"
@@ -141,7 +145,7 @@ def _description(archive: Path, ds: xr.Dataset) -> Iterator[tuple[str, str, str]
         yield f"Tabor parameter, {surface}", f"{attributes[f'tabor_parameter_{surface}']:.4g}", str(regime)
     yield "variables", "", ""
     for quantity, variable in ds.data_vars.items():
-        if "time" not in variable.dims and "event" not in variable.dims:
+        if not {"time", *DIMS} & {*variable.dims}:
             continue  # solver statistics of the runs; their totals are printed above
         yield str(quantity), f"({', '.join(map(str, variable.dims))})", str(variable.attrs.get("units", ""))
     yield from _scene_rows(ds)

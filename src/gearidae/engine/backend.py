@@ -6,6 +6,7 @@ import logging
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,6 @@ from gearidae.compiled import compiles
 from gearidae.engine.changeover import change_over, deepen, lighten
 from gearidae.engine.continuing import checkpoint_of_start, knots_at_start, problem_from
 from gearidae.engine.drivers import formulas, load_driver, native_formulas, ready_driver
-from gearidae.engine.events.record import EVENT_NUMBERS
 from gearidae.engine.integrate.driver import Block, Ending
 from gearidae.engine.run_ends import Ended, OnBlock
 from gearidae.engine.setup.problem import Problem
@@ -22,8 +22,8 @@ from gearidae.engine.setup.start import AT_ONCE, Start
 from gearidae.engine.sundials.names import unavailable
 from gearidae.errors import SceneError
 from gearidae.records import (
+    ROWS,
     EnergyBalance,
-    EventColumn,
     Events,
     Extremes,
     Solution,
@@ -208,16 +208,13 @@ def follow(
         ready_driver(name, problem)
         skipped = problem.skipped  # which a change to another contact model changes
         started = time.perf_counter()
-        resume, at_start = start.checkpoint, np.empty((0, EVENT_NUMBERS))
+        resume, at_start = start.checkpoint, Events.no_table()
         if resume is None and start.scene is not None:
             resume = checkpoint_of_start(scene, start)
             at_start = knots_at_start(problem)
         for block in run_blocks(problem, scene.run.rtol, scene.run.sample_count, name, statistics, resume):
             if len(at_start):
-                block.events, at_start = (
-                    np.concatenate([at_start, block.events]),
-                    np.empty((0, EVENT_NUMBERS)),
-                )
+                block.events, at_start = np.concatenate([at_start, block.events]), Events.no_table()
             take(block, statistics, start.wall_time + time.perf_counter() - started)
             reached = block.time
             balance, extremes = block.balance or balance, block.extremes or extremes
@@ -283,18 +280,20 @@ def solve(
     changes = {key: value for key, value in given.items() if value is not None}
     scene = scene.replace(changes) if changes else scene
     columns = columns_of(scene)
-    rows, events = [np.empty((0, len(columns)))], [np.empty((0, EVENT_NUMBERS))]
+    rows = [np.empty((0, len(columns)))]
+    tables = {kind.field: [kind.no_table()] for kind in ROWS}
 
     def take(block: Block, statistics: Statistics, wall_time: float) -> None:
         rows.append(block.rows)
-        events.append(block.events)
+        for field, parts in tables.items():
+            parts.append(getattr(block, field))
 
     ended = follow(scene, take, backend=backend, on_progress=on_progress, start=start, on_block=on_block)
     table = np.concatenate(rows)
+    left: dict[str, Any] = {kind.field: kind.of_table(np.concatenate(tables[kind.field])) for kind in ROWS}
     return Solution(
         time=sample_times(start.time, scene.run.duration, scene.run.sample_count)[: len(table)],
         samples={column: np.ascontiguousarray(table[:, i]) for i, column in enumerate(columns)},
-        events=_events(np.concatenate(events)),
         statistics=ended.statistics,
         status=ended.status,
         message=ended.message,
@@ -303,6 +302,7 @@ def solve(
         extremes=ended.extremes,
         start=start.time,
         checkpoint=ended.checkpoint,
+        **left,
     )
 
 
@@ -361,15 +361,3 @@ def kept_at(
     problem.prepare(scene.run.rtol, scene.run.sample_count)
     time, state = problem.restored(checkpoint)
     return problem.kept(time, state, np.zeros_like(state))
-
-
-def _events(table: NDArray[np.float64]) -> Events:
-    column = {one.name.lower(): table[:, one] for one in EventColumn}
-    return Events(
-        time=np.ascontiguousarray(column["time"]),
-        kind=column["kind"].astype(np.int8),
-        pair=column["pair"].astype(np.int64),
-        flank=column["flank"].astype(np.int8),
-        gap_rate=np.ascontiguousarray(column["gap_rate"]),
-        asperity=column["asperity"].astype(np.int64),
-    )

@@ -28,7 +28,6 @@ from gearidae.engine.changeover import (
 from gearidae.engine.energy.contacts import stored_energy
 from gearidae.engine.events.asperity_events import join_at_start
 from gearidae.engine.events.histories import accept
-from gearidae.engine.events.record import EVENT_NUMBERS
 from gearidae.engine.events.sliding import begin_sliding, settle_start
 from gearidae.engine.followers.balance import open_balance
 from gearidae.engine.followers.exposures.bins import ROWS, exposure_table, exposures_of
@@ -57,7 +56,7 @@ from gearidae.engine.setup.problem import Problem
 from gearidae.engine.setup.start import Start
 from gearidae.engine.torques.schedule import segment_ends
 from gearidae.errors import SceneError
-from gearidae.records import EventKind, Flank
+from gearidae.records import EventKind, Events, Flank
 from gearidae.records.quantity import convert
 from gearidae.scene import Scene
 from gearidae.scene.differences import MAY_CHANGE, first_difference
@@ -135,6 +134,8 @@ def checkpoint_of_start(scene: Scene, start: Start) -> Floats:
     _hold_or_slip(source, m, time, y)
     if source.scene.follow.balance != m.scene.follow.balance:
         _begin_balance(m, y)
+    if source.scene.follow.passages != m.scene.follow.passages:
+        m.state.passage[:] = np.zeros((), STATE["passage"])  # nothing is known of what has been before
     rebase(m, y)
     m.state.progress.restarts = 1
     return new.checkpoint(time, y)
@@ -147,15 +148,15 @@ def knots_at_start(problem: Problem) -> Floats:
 
     Returns
     -------
-    ndarray, shape (0 or 1, EVENT_NUMBERS)
-        Time [s], kind, pair, flank, gap rate [m/s].
+    ndarray, shape (0 or 1, columns)
+        Table of `Events`.
     """
     s, tables = problem.model.scene, problem.model.tables
     ends = np.concatenate([segment_ends(own, tables) for own in s.schedule])
     if not ((ends <= s.start) & (s.start - ends <= KNOT_SPACING * s.start)).any():
-        return np.empty((0, EVENT_NUMBERS))
-    time = float(s.start * s.time_unit)
-    return np.array([[time, EventKind.SCHEDULE_KNOT, 0.0, Flank.NONE, 0.0, -1.0]])
+        return Events.no_table()
+    time, kind = float(s.start * s.time_unit), EventKind.SCHEDULE_KNOT
+    return Events(*np.array([[time], [kind], [0], [Flank.NONE], [0.0]])).table()
 
 
 def _restored(scene: Scene, words: Floats, began: float) -> tuple[Problem, Floats]:

@@ -29,7 +29,7 @@ from gearidae.compiled import cache_folder, is_cached
 from gearidae.engine.integrate import native
 from gearidae.engine.setup.build import make_problem
 from gearidae.engine.setup.problem import Problem
-from gearidae.records import EventColumn, EventKind, Statistics
+from gearidae.records import EVENT, EventKind, Statistics
 from gearidae.scene import Scene
 
 TRIED: Final = ("linux",)
@@ -240,11 +240,9 @@ def _mark_error(scene: Scene, events: NDArray[np.float64]) -> float:
     assert scene.initial
     assert scene.gears
     turn = 2.0 * math.pi / scene.gears.gear_teeth / scene.initial.gear_speed
-    entries = events[
-        (events[:, EventColumn.KIND] == EventKind.MESH_ENTRY) & (events[:, EventColumn.FLANK] == 0)
-    ]
+    entries = events[(events[:, EVENT.kind] == EventKind.MESH_ENTRY) & (events[:, EVENT.flank] == 0)]
     wanted = (np.arange(1, math.ceil(scene.run.duration / turn + 1.0)) - scene.initial.mesh_phase) * turn
     wanted = wanted[wanted < scene.run.duration]
-    if len(entries) != len(wanted) or list(entries[:, EventColumn.PAIR]) != list(range(1, len(wanted) + 1)):
+    if len(entries) != len(wanted) or list(entries[:, EVENT.pair]) != list(range(1, len(wanted) + 1)):
         return math.inf
-    return float(abs(entries[:, EventColumn.TIME] - wanted).max() / scene.run.duration)
+    return float(abs(entries[:, EVENT.time] - wanted).max() / scene.run.duration)

@@ -1,4 +1,4 @@
-"""Plain records that all rooms exchange: samples, events, endings, statistics, energy balance, extremes, solutions.
+"""Plain records that all rooms exchange: samples, events, passages, endings, statistics, totals, solutions.
 
 The engine returns them and the archive stores them; nothing here depends on another room.
 """
@@ -30,7 +30,7 @@ from gearidae.records.energy import (
     EnergyBalance,
 )
 from gearidae.records.events import (
-    EventColumn,
+    EVENT,
     EventKind,
     Events,
     Flank,
@@ -40,11 +40,14 @@ from gearidae.records.extremes import (
     RUN_PARTS,
     Extremes,
 )
+from gearidae.records.passages import Passages
 from gearidae.records.results import (
+    ROWS,
     Block,
     Solution,
     Words,
 )
+from gearidae.records.rows import RowColumn, Rows
 from gearidae.records.sampling import (
     first_sample,
     sample_times,
@@ -59,6 +62,7 @@ __all__ = [
     "COUNTERS",
     "ELASTIC_COLUMNS",
     "ELASTIC_SAMPLES",
+    "EVENT",
     "GEAR_BOUND",
     "GEAR_COLUMNS",
     "GEAR_SAMPLES",
@@ -73,6 +77,7 @@ __all__ = [
     "ROLLER_COLUMNS",
     "ROLLER_SAMPLES",
     "ROUNDING_BOUND",
+    "ROWS",
     "RUN_PARTS",
     "TABLE_BOUND",
     "TORQUE_BOUND",
@@ -81,12 +86,14 @@ __all__ = [
     "Column",
     "Ending",
     "EnergyBalance",
-    "EventColumn",
     "EventKind",
     "Events",
     "ExposureRows",
     "Extremes",
     "Flank",
+    "Passages",
+    "RowColumn",
+    "Rows",
     "Solution",
     "Statistics",
     "Words",

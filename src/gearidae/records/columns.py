@@ -6,8 +6,9 @@ these lists.
 
 from __future__ import annotations
 
-from collections import namedtuple
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
+
+from gearidae.records.rows import places
 
 
 class Column(NamedTuple):
@@ -122,16 +123,10 @@ PIN_COLUMNS = tuple(column.name for column in PIN_SAMPLES)
 """Additional columns of elastic contacts, of populations, of hubs and of a pin, after the others."""
 
 
-def _places(*columns: str) -> Any:
-    """Place of each column in a row, by its name."""
-    make: Any = namedtuple  # mypy takes names that are written out only
-    return make("Places", columns)(*range(len(columns)))
-
-
-GEAR: Final = _places(*GEAR_COLUMNS, *ELASTIC_COLUMNS)
-ROLLER: Final = _places(*ROLLER_COLUMNS, *ELASTIC_COLUMNS)
-GEAR_POPULATION: Final = _places(*GEAR_COLUMNS, *POPULATION_COLUMNS)
-ROLLER_POPULATION: Final = _places(*ROLLER_COLUMNS, *POPULATION_COLUMNS)
+GEAR: Final = places(*GEAR_COLUMNS, *ELASTIC_COLUMNS)
+ROLLER: Final = places(*ROLLER_COLUMNS, *ELASTIC_COLUMNS)
+GEAR_POPULATION: Final = places(*GEAR_COLUMNS, *POPULATION_COLUMNS)
+ROLLER_POPULATION: Final = places(*ROLLER_COLUMNS, *POPULATION_COLUMNS)
 """Places of the columns in a row of samples: ``row[GEAR.gear_speed]``."""
 
 

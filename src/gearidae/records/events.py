@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import math
+from collections.abc import Mapping
 from enum import IntEnum
+from typing import ClassVar, Final
 
 import numpy as np
-from numpy.typing import NDArray
+
+from gearidae.records.rows import FLAG, RowColumn, Rows, places
 
 
 class EventKind(IntEnum):
@@ -37,20 +40,8 @@ class Flank(IntEnum):
     COAST = 1
 
 
-class EventColumn(IntEnum):
-    """Column of an event in a driver's block of output, shape (n, 6)."""
-
-    TIME = 0
-    KIND = 1
-    PAIR = 2
-    FLANK = 3
-    GAP_RATE = 4
-    ASPERITY = 5
-
-
-@dataclass(frozen=True, slots=True)
-class Events:
-    """Events in the order of time; every array has shape (n_events,).
+class Events(Rows):
+    """Events in the order of time.
 
     Attributes
     ----------
@@ -66,19 +57,22 @@ class Events:
         Rate of change of that pair's gap [m/s]; negative while it closes.
     asperity : ndarray of int64, optional
         Number of the asperity on its flank, of a population; -1, the default, where an event is of no single one.
+    force : ndarray of float64, optional
+        Force of the pair at an onset or a separation [N]; NaN, the default, elsewhere.
     """
 
-    time: NDArray[np.float64]
-    kind: NDArray[np.int8]
-    pair: NDArray[np.int64]
-    flank: NDArray[np.int8]
-    gap_rate: NDArray[np.float64]
-    asperity: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
+    dim = "event"
+    field = "events"
+    columns: ClassVar[Mapping[str, RowColumn]] = {
+        "time": RowColumn(),
+        "kind": RowColumn(FLAG),
+        "pair": RowColumn(np.int64),
+        "flank": RowColumn(FLAG),
+        "gap_rate": RowColumn(),
+        "asperity": RowColumn(np.int64, -1),
+        "force": RowColumn(missing=math.nan),
+    }
 
-    def __post_init__(self) -> None:
-        """Let events be of no single asperity where none are named."""
-        if self.asperity.size == 0:
-            object.__setattr__(self, "asperity", np.full(len(self.time), -1, np.int64))
 
-    def __len__(self) -> int:
-        return len(self.time)
+EVENT: Final = places(*Events.columns)
+"""Places of the columns in an event's row: ``row[EVENT.kind]``."""

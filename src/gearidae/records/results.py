@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, field
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from gearidae.records.energy import EnergyBalance
 from gearidae.records.events import Events
 from gearidae.records.extremes import Extremes
+from gearidae.records.passages import Passages
+from gearidae.records.rows import Rows
 from gearidae.records.statistics import Statistics
 
 Words = NDArray[Any]
@@ -25,8 +27,8 @@ class Block:
     ----------
     rows : ndarray, shape (n, columns)
         Samples after those of the previous block, SI units.
-    events : ndarray, shape (m, 6)
-        Time [s], kind, pair, flank, gap rate [m/s], asperity by its place on its flank or -1.
+    events : ndarray, shape (m, columns)
+        Table of `Events`, asperities by their places on their flanks.
     time : float
         Simulated time reached [s].
     checkpoint : ndarray of 8-byte words, optional
@@ -36,6 +38,8 @@ class Block:
         The energy balance at the end of this block; missing if the block ends in the middle of a step.
     extremes : Extremes, optional
         The extremes at the end of this block; missing under the same condition.
+    passages : ndarray, shape (k, columns)
+        Table of `Passages`.
     """
 
     rows: NDArray[np.float64]
@@ -44,6 +48,11 @@ class Block:
     checkpoint: Words | None = None
     balance: EnergyBalance | None = None
     extremes: Extremes | None = None
+    passages: NDArray[np.float64] = field(default_factory=Passages.no_table)
+
+
+ROWS: Final[tuple[type[Rows], ...]] = (Events, Passages)
+"""Kinds of rows that a run leaves, each a field of a block and of a solution."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +79,7 @@ class Solution:
         Start time of the run [s].
     checkpoint : ndarray of 8-byte words, optional
         State at the end, from which another run can continue.
+    passages : Passages
     """
 
     time: NDArray[np.float64]
@@ -83,3 +93,4 @@ class Solution:
     extremes: Extremes | None = None
     start: float = 0.0
     checkpoint: Words | None = None
+    passages: Passages = field(default_factory=Passages.none)

@@ -12,7 +12,6 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gearidae.archive.select import is_roller, motion_samples, run_scene
-from gearidae.archive.variables import EVENTS
 from gearidae.arrays import Floats
 from gearidae.drawing.style import runs_of
 from gearidae.errors import SceneError
@@ -74,7 +73,9 @@ def pack_teeth(ds: xr.Dataset, most_states: int = MOST_STATES) -> dict[str, Any]
         scene (lengths in m, shapes in modules), and ``states``: base64 text of little-endian float32 numbers, row by
         row. Empty for rollers, and where samples or events have not been kept.
     """
-    if is_roller(ds) or any(name not in ds.variables for name in (*sampled_columns(roller=False), *EVENTS)):
+    if is_roller(ds) or any(
+        name not in ds.variables for name in (*sampled_columns(roller=False), "event_time")
+    ):
         return {}
     try:
         shown = runs_of(ds, "transmission_error")

@@ -19,27 +19,17 @@ from gearidae.archive.keep import EVERYTHING, Keep
 from gearidae.archive.provenance import SCHEMA_VERSION, provenance
 from gearidae.archive.store import Store
 from gearidae.archive.variables import VERDICT
-from gearidae.records import EnergyBalance, Events, Extremes, Solution, Statistics
+from gearidae.records import ROWS, EnergyBalance, Extremes, Solution, Statistics
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
-_LAYOUT = 7
+_LAYOUT = 8
 """Version of the entries' layout."""
 _KEY: Final = re.compile(r"[0-9a-f]{64}")
 """Keys of runs."""
 _FORMER: Final = re.compile(r"([0-9a-f]{64}\.nc|runs\.jsonl)")
 """Files in which version 0.1.0 kept runs."""
-_EVENTS = {
-    "time": np.float64,
-    "kind": np.int8,
-    "pair": np.int64,
-    "flank": np.int8,
-    "gap_rate": np.float64,
-    "asperity": np.int64,
-}
-"""Rows of the table of events, all of which double precision holds exactly, and their types in memory."""
-
 _STATISTICS = tuple(field.name for field in fields(Statistics) if field.name not in ("ending", "fold_gap"))
 """What is kept of the statistics; a run that is kept has finished."""
 
@@ -123,7 +113,7 @@ class KeptRuns:
         header = _header(solution, {name: (judged or {}).get(name) for name in VERDICT})
         tables = {
             "samples": np.stack([solution.time, *solution.samples.values()]),
-            "events": np.stack([getattr(solution.events, name).astype(np.float64) for name in _EVENTS]),
+            **{kind.field: getattr(solution, kind.field).table() for kind in ROWS},
         }
         try:
             self._store.put(self.key(scene), header, {name: one for name, one in tables.items() if one.size})
@@ -173,7 +163,7 @@ class KeptRuns:
 
 
 def _header(solution: Solution, judged: dict[str, Any]) -> dict[str, Any]:
-    """All of a run but its samples and events."""
+    """All of a run but its samples and rows."""
     return {
         "judged": judged,
         "columns": list(solution.samples),
@@ -190,18 +180,20 @@ def _rebuilt(header: dict[str, Any], tables: Mapping[str, NDArray[Any]]) -> tupl
     """Make a run of its header and its tables."""
     time, *samples = tables.get("samples", np.empty((1 + len(header["columns"]), 0)))
     columns = {name: row.copy() for name, row in zip(header["columns"], samples, strict=True)}
-    events = zip(_EVENTS.items(), tables.get("events", np.empty((len(_EVENTS), 0))), strict=True)
+    rows: dict[str, Any] = {
+        kind.field: kind.of_table(tables.get(kind.field, kind.no_table())) for kind in ROWS
+    }
     extremes = header["extremes"]  # JSON has no arrays
     solution = Solution(
         time.copy(),
         columns,
-        Events(**{name: row.astype(dtype) for (name, dtype), row in events}),
-        Statistics(**header["statistics"]),
-        header["status"],
-        header["message"],
-        header["reached"],
-        header["balance"] and EnergyBalance(header["balance"]),
-        extremes and Extremes({**extremes, "exposures": array("d", extremes["exposures"])}),
+        statistics=Statistics(**header["statistics"]),
+        status=header["status"],
+        message=header["message"],
+        reached=header["reached"],
+        balance=header["balance"] and EnergyBalance(header["balance"]),
+        extremes=extremes and Extremes({**extremes, "exposures": array("d", extremes["exposures"])}),
+        **rows,
     )
     found = {name: header["judged"][name] for name in VERDICT}
     kinds = {name: str if variable.dtype is np.str_ else int for name, variable in VERDICT.items()}

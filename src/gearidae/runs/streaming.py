@@ -131,7 +131,7 @@ class _Run:
                     checkpoint=point.state,
                     reached=reached,
                     wall_time=point.wall_time,
-                    events=point.events,
+                    events=point.lengths["event"],
                     statistics=point.statistics,
                 )
             return engine.follow(
@@ -192,7 +192,7 @@ class _Run:
         return engine.Ended(statistics, "finished", "", point.time, balance, extremes, point.state)
 
     def _template(self, ended: Ended | None = None) -> xr.Dataset:
-        """Make the run's dataset, without samples and events."""
+        """Make the run's dataset, without samples and rows."""
         empty = unsolved("running", "the run is not at its end yet")
         if ended is None:
             statistics = replace(

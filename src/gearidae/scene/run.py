@@ -81,6 +81,10 @@ class Run(Group):
     balance: Switch = Field(
         default=True, description="whether the energy balance is kept; exposures and a life need it"
     )
+    passages: Switch = Field(
+        default=True,
+        description="whether a table of passages is kept, with works, losses and forces at each mesh exit",
+    )
     asperity_events: Switch = Field(
         default=True,
         description="whether each joining and detachment of a population's asperities is an event kept",

@@ -1,10 +1,10 @@
-"""What is sampled of a scene."""
+"""What is sampled of a scene, and which rows its runs leave."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from gearidae.records import sampled_columns
+from gearidae.records import Events, Passages, Rows, sampled_columns
 from gearidae.scene.joints import has_pin, joints
 
 if TYPE_CHECKING:
@@ -21,3 +21,9 @@ def columns_of(scene: Scene) -> tuple[str, ...]:
         hubs=hubs,
         pin=hubs and has_pin(scene),
     )
+
+
+def rows_of(scene: Scene) -> tuple[type[Rows], ...]:
+    """Kinds of rows that a run of a scene leaves."""
+    has_passages = scene.roller is None and scene.run.passages
+    return (Events, Passages) if has_passages else (Events,)

@@ -11,12 +11,14 @@ import numpy as np
 import xarray as xr
 
 from gearidae.archive.energy import energy_balance
+from gearidae.archive.rows import LABELS, kinds_in, own_rows
 from gearidae.archive.run_summary import Account, account
-from gearidae.archive.select import is_roller, own_events, run_scene, runs, scene_of, swept_dims
+from gearidae.archive.select import is_roller, run_scene, runs, scene_of, swept_dims
 from gearidae.archive.single import single_run
-from gearidae.archive.tables import LARGEST_TABLE, event_table, run_labels, time_series
+from gearidae.archive.tables import LARGEST_TABLE, row_table, run_labels, time_series
 from gearidae.archive.variables import EXTREMES, STANDSTILL_LIST
 from gearidae.errors import SceneError
+from gearidae.records import Events, Passages
 from gearidae.scene import Scene
 from gearidae.scene.carried import cf_unit, number_of
 from gearidae.scene.units import from_text
@@ -122,7 +124,7 @@ class Results:
         ds = self._ds
         for name, value in labels.items():
             ds = _picked(ds, name, value)
-        return own_events(ds)
+        return own_rows(ds)
 
     def run(self, **labels: Any) -> xr.Dataset:
         """Pick one run by its labels, with its own scene and only its own events.
@@ -225,8 +227,12 @@ class Results:
         return time_series(self._ds, variables, largest=largest)
 
     def events(self) -> pd.DataFrame:
-        """Make a table of the events of these runs; see `gearidae.archive.tables.event_table`."""
-        return event_table(self._ds)
+        """Make a table of the events of these runs; see `gearidae.archive.tables.row_table`."""
+        return row_table(self._ds, Events)
+
+    def passages(self) -> pd.DataFrame:
+        """Make a table of the passages of these runs: forces since the last mesh exit, and running sums of energies."""
+        return row_table(self._ds, Passages)
 
     def _title(self) -> str:
         """Say what the dataset is, in a line."""
@@ -268,7 +274,7 @@ class Results:
             "verdicts()": of_runs,
             "standstills()": of_runs and STANDSTILL_LIST.name in ds,
             "to_dataframe()": "time" in ds.dims,
-            "events()": "event" in ds.dims,
+            **{f"{kind.field}()": True for kind in kinds_in(ds)},
         }
         for name, offered in names.items():
             if offered:
@@ -284,7 +290,7 @@ class Results:
 def _picked(ds: xr.Dataset, name: str, value: Any) -> xr.Dataset:
     """Pick the runs that have a value of a coordinate."""
     dims = swept_dims(ds)
-    known = [str(each) for each in ds.coords if each not in ("time", "event")]
+    known = [str(each) for each in ds.coords if each not in LABELS]
     if name not in known:
         raise SceneError("run", name, f"must be one of {', '.join(known)}")
     labels = np.atleast_1d(ds[name].values)

@@ -13,7 +13,7 @@ from typing import Final
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import POPULATION
-from gearidae.engine.events.record import EVENTS_AT_ONCE, record, record_asperity
+from gearidae.engine.events.record import EVENTS_AT_ONCE, record, record_asperity, record_contact
 from gearidae.engine.model.state import Floats, Model
 from gearidae.engine.pairs.tooth_pairs import PairState, flank_of_history, list_known
 from gearidae.engine.population.candidates import choose, covers, list_joined
@@ -136,13 +136,15 @@ def _turn(m: Model, k: int, j: int) -> None:
 
 
 @compiled
-def record_flips(m: Model, t: float, events: Floats, count: int) -> tuple[int, bool]:
+def record_flips(m: Model, t: float, y: Floats, events: Floats, count: int) -> tuple[int, bool]:
     """Record what `flip_asperities` has found, and pairs that come into contact or part with it.
 
     Parameters
     ----------
     t : float
         Time over tau.
+    y : ndarray, shape (n,)
+        State there.
     count : int
         See `gearidae.engine.events.record`.
 
@@ -168,7 +170,7 @@ def record_flips(m: Model, t: float, events: Floats, count: int) -> tuple[int, b
         if own.flips > 0 and (own.joined > 0) != (h.in_contact != 0):
             h.in_contact = 1 - h.in_contact
             kind = _PAIR_ONSET if h.in_contact != 0 else _PAIR_SEPARATION
-            count = record(m, events, count, t, kind, h.pair, coast, h.gap_rate)
+            count = record_contact(m, y, events, count, (t, kind, h.pair, coast, h.gap_rate))
             if h.in_contact != 0:
                 if m.state.last_flank == 1 - coast:
                     count = record(m, events, count, t, _FLANK_CHANGE, h.pair, coast, h.gap_rate)

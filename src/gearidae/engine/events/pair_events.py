@@ -11,7 +11,7 @@ from gearidae.compiled import compiled
 from gearidae.contact.history import joined_height
 from gearidae.engine.elastic.histories import join_nodes
 from gearidae.engine.elastic.nodes import middle_gap
-from gearidae.engine.events.record import record
+from gearidae.engine.events.record import record, record_contact
 from gearidae.engine.model.state import MATERIALS, Floats, Model
 from gearidae.engine.pairs.tooth_pairs import gap_and_rate, set_joined
 from gearidae.records import EventKind
@@ -96,7 +96,7 @@ def take_event(m: Model, t: float, y: Floats, found: PairEvent, events: Floats, 
     """
     coast, pair, k, rate = found.coast, found.pair, found.k, found.rate
     if found.touches:
-        count = _change_contact(m, t, coast, pair, k, rate, events, count)
+        count = _change_contact(m, t, y, found, events, count)
     for material in range(MATERIALS if found.stretches else 0):
         if newly_stretched(m, k, material, found.middle):
             m.state.history[k].fully_stretched[material] = 1
@@ -108,14 +108,13 @@ def take_event(m: Model, t: float, y: Floats, found: PairEvent, events: Floats, 
 
 
 @compiled
-def _change_contact(
-    m: Model, t: float, coast: int, pair: int, k: int, rate: float, events: Floats, count: int
-) -> int:
+def _change_contact(m: Model, t: float, y: Floats, found: PairEvent, events: Floats, count: int) -> int:
     """Contact onset or separation, and a change of flank with it."""
-    h = m.state.history[k]
+    coast, pair, rate = found.coast, found.pair, found.rate
+    h = m.state.history[found.k]
     h.in_contact = 1 - h.in_contact
     onset = h.in_contact != 0
-    count = record(m, events, count, t, _ONSET if onset else _SEPARATION, pair, coast, rate)
+    count = record_contact(m, y, events, count, (t, _ONSET if onset else _SEPARATION, pair, coast, rate))
     if onset:
         if m.state.last_flank == 1 - coast:
             count = record(m, events, count, t, _FLANK_CHANGE, pair, coast, rate)

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
 from gearidae.compiled import compiled
 from gearidae.engine.model.state import Floats, Model
-from gearidae.records import EventColumn
+from gearidae.engine.motion.pair_forces import force_of_one
+from gearidae.records import EVENT, EventKind
 
-_TIME, _KIND, _PAIR, _FLANK, _GAP_RATE, _ASPERITY = map(int, EventColumn)
-EVENT_NUMBERS: Final = len(EventColumn)
+_TIME, _KIND, _PAIR, _FLANK, _GAP_RATE, _ASPERITY, _FORCE = EVENT
+_ONSET: Final = float(EventKind.ONSET)
+EVENT_NUMBERS: Final = len(EVENT)
 """Numbers of an event."""
 EVENTS_AT_ONCE: Final = 8 * 64 + 64
 """More than can be recorded at one accepted time: four for each pair, and those of mesh, gear and schedules."""
@@ -24,13 +27,17 @@ def record(
     Parameters
     ----------
     events : ndarray, shape (n, EVENT_NUMBERS)
-        Columns of `EventColumn`, in SI units; asperity -1 where an event is of no single one. Where it is full nothing
-        is written; drivers keep `EVENTS_AT_ONCE` free before they look for events.
+        Columns of `gearidae.records.Events`, in SI units; asperity -1 where an event is of no single one, force NaN
+        but for onsets and separations. Where it is full nothing is written; drivers keep `EVENTS_AT_ONCE` free before
+        they look for events.
     count : int
         Events already there.
     t, kind, pair, flank, rate : float
         Time over tau, what has happened where, and the pair's gap rate, scaled.
     """
+    if kind == _ONSET:
+        for side in range(2):
+            m.state.passage[side].impacts += 1
     if count >= events.shape[0]:
         return count
     events[count, _TIME] = t * m.scene.time_unit
@@ -39,7 +46,20 @@ def record(
     events[count, _FLANK] = flank
     events[count, _GAP_RATE] = rate * m.scene.length_unit / m.scene.time_unit
     events[count, _ASPERITY] = -1.0
+    events[count, _FORCE] = math.nan
     return count + 1
+
+
+@compiled
+def record_contact(
+    m: Model, y: Floats, events: Floats, count: int, what: tuple[float, float, int, int, float]
+) -> int:
+    """Write an onset or a separation likewise, with the force of the pair at a state."""
+    t, kind, pair, flank, rate = what
+    after = record(m, events, count, t, kind, pair, flank, rate)
+    if after > count:
+        events[count, _FORCE] = force_of_one(m, t, y, flank, pair) * m.scene.force_unit
+    return after
 
 
 @compiled

@@ -329,6 +329,23 @@ def _note_resistance(m: Model, t: float, gear: float, y: Floats, yp: Floats) -> 
 
 
 @compiled
+def note_changes(m: Model, y: Floats) -> tuple[float, float]:
+    """Note the changes of the energies up to a state to which the sums have been brought.
+
+    Returns
+    -------
+    adhesion, radius : float
+        What adhesion loss and work of the changing radius lack there for what contacts have pending.
+    """
+    e, now = m.state.energy, m.work.energy_now
+    stored, pending = stored_energy(m, y)
+    lag = joining_lag(m)
+    now.stored_change = stored - pending - e.start_stored
+    now.kinetic_change = kinetic_energy(m, y) - e.start_kinetic
+    return pending - lag, -lag if m.scene.radius_force == 0 else 0.0
+
+
+@compiled
 def look(m: Model, t: float, y: Floats) -> None:
     """Add to the sums, for a look at them, what contacts have pending, and note the present energies.
 
@@ -340,14 +357,10 @@ def look(m: Model, t: float, y: Floats) -> None:
         State there.
     """
     e, now = m.state.energy, m.work.energy_now
-    stored, pending = stored_energy(m, y)
-    lag = joining_lag(m)
-    e.adhesion_loss = e.adhesion_loss + pending - lag
-    if m.scene.radius_force == 0:
-        e.radius_work -= lag
+    adhesion, radius = note_changes(m, y)
+    e.adhesion_loss += adhesion
+    e.radius_work += radius
     e.quadrature_error += e.loss_error
-    now.stored_change = stored - pending - e.start_stored
-    now.kinetic_change = kinetic_energy(m, y) - e.start_kinetic
     now.largest = e.peak_kinetic + abs(e.start_stored) + abs(e.model_change)
     if m.scene.kind == GEARS:
         pinion, gear, twice = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass, 2.0 * e.peak_kinetic

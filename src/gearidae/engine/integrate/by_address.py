@@ -9,6 +9,7 @@ from __future__ import annotations
 from gearidae.compiled import compiled
 from gearidae.engine.events.asperity_events import first_dip, note_step_start
 from gearidae.engine.events.events import guard
+from gearidae.engine.integrate.driver import Output
 from gearidae.engine.integrate.epilogue import finish_step
 from gearidae.engine.integrate.resting import rest_step
 from gearidae.engine.model.located import model_at
@@ -59,10 +60,10 @@ def observe_at(place: int, t: float, y: Floats, row: Floats) -> None:
 
 @compiled
 def finish_step_at(
-    place: int, y: Floats, yp: Floats, between: tuple[Floats, Floats], flag: int, events: Floats
+    place: int, y: Floats, yp: Floats, between: tuple[Floats, Floats], flag: int, out: Output
 ) -> bool:
     """`gearidae.engine.integrate.epilogue.finish_step`."""
-    return finish_step(model_at(place), y, yp, between, flag, events)
+    return finish_step(model_at(place), y, yp, between, flag, out)
 
 
 @compiled

@@ -9,11 +9,13 @@ import numpy as np
 
 from gearidae.compiled import compiled
 from gearidae.engine.events.record import EVENT_NUMBERS
+from gearidae.engine.followers.passages import PASSAGE_NUMBERS, units
 from gearidae.engine.model.state import Floats, Model, Record
-from gearidae.records import COUNTERS, Block, Ending, EnergyBalance, Extremes, Statistics
+from gearidae.records import COUNTERS, Block, Ending, EnergyBalance, Extremes, Passages, Statistics
 
 __all__ = [
     "BLOCK_EVENTS",
+    "BLOCK_PASSAGES",
     "BLOCK_ROWS",
     "BLOCK_SECONDS",
     "BLOCK_STEPS",
@@ -35,6 +37,8 @@ BLOCK_ROWS = 16_384
 """Samples in a full block."""
 BLOCK_EVENTS = 16_384
 """Events in a full block."""
+BLOCK_PASSAGES = 1024
+"""Passages in a full block."""
 BLOCK_STEPS = 50_000
 """Steps after which a driver comes back to Python in any case."""
 BLOCK_SECONDS = 0.2
@@ -76,21 +80,28 @@ def update_statistics(statistics: Statistics, progress: Record) -> None:
 
 
 class Output(NamedTuple):
-    """Samples and events of a block, before it is handed out.
+    """Samples, events and passages of a block, before it is handed out.
 
     Attributes
     ----------
     rows : ndarray, shape (BLOCK_ROWS, columns)
     events : ndarray, shape (BLOCK_EVENTS, EVENT_NUMBERS)
+    passages : ndarray, shape (BLOCK_PASSAGES, PASSAGE_NUMBERS)
+        Scaled.
     """
 
     rows: Floats
     events: Floats
+    passages: Floats
 
     @classmethod
     def empty(cls, columns: int) -> Output:
         """Room for a block."""
-        return cls(np.empty((BLOCK_ROWS, columns)), np.empty((BLOCK_EVENTS, EVENT_NUMBERS)))
+        return cls(
+            np.empty((BLOCK_ROWS, columns)),
+            np.empty((BLOCK_EVENTS, EVENT_NUMBERS)),
+            np.empty((BLOCK_PASSAGES, PASSAGE_NUMBERS)),
+        )
 
     def block(
         self,
@@ -111,15 +122,16 @@ class Output(NamedTuple):
             EnergyBalance and extremes, likewise; see `gearidae.engine.setup.problem.Problem.kept`.
         """
         driver = m.work.driver
-        rows, events = int(driver.rows), int(driver.events)
+        rows, events, passages = int(driver.rows), int(driver.events), int(driver.passages)
         block = Block(
             self.rows[:rows].copy(),
             self.events[:events].copy(),
             time * float(m.scene.time_unit),
             checkpoint,
             *kept,
+            passages=self.passages[:passages] * units(m.scene) if passages else Passages.no_table(),
         )
-        driver.rows = driver.events = 0
+        driver.rows = driver.events = driver.passages = 0
         return block
 
 

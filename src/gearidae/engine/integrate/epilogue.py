@@ -13,7 +13,15 @@ from gearidae.engine.events.run_stop import stop_guard
 from gearidae.engine.events.schedule_knots import keeps_checkpoint, pass_knot
 from gearidae.engine.events.sliding import follow_creeping, follow_sliding
 from gearidae.engine.followers import in_turn as followers
-from gearidae.engine.integrate.driver import BOUND_EXCEEDED, CHATTER, CHECKPOINT_STEPS, LIGHT, MANY_EVENTS
+from gearidae.engine.followers.passages import PASSAGES_AT_ONCE, write_passages
+from gearidae.engine.integrate.driver import (
+    BOUND_EXCEEDED,
+    CHATTER,
+    CHECKPOINT_STEPS,
+    LIGHT,
+    MANY_EVENTS,
+    Output,
+)
 from gearidae.engine.integrate.resting import begin_rest, comes_to_rest
 from gearidae.engine.integrate.start import PHASE_HIGH, rebase, set_rates
 from gearidae.engine.integrate.step_control import change_wanted
@@ -23,14 +31,15 @@ from gearidae.engine.pairs.tooth_pairs import flank_of_history, in_flight, list_
 
 
 @compiled
-def has_room(count: int, events: Floats) -> bool:
-    """Whether all events of one more accepted time find room in the block: else it is handed out first."""
-    return bool(count <= events.shape[0] - EVENTS_AT_ONCE)
+def has_room(events: int, passages: int, out: Output) -> bool:
+    """Whether all that happens at one more accepted time finds room in the block: else it is handed out first."""
+    room = out.events.shape[0] - EVENTS_AT_ONCE, out.passages.shape[0] - PASSAGES_AT_ONCE
+    return bool(events <= room[0] and passages <= room[1])
 
 
 @compiled(inline=True)
 def finish_step(
-    m: Model, y: Floats, yp: Floats, between: tuple[Floats, Floats], flag: int, events: Floats
+    m: Model, y: Floats, yp: Floats, between: tuple[Floats, Floats], flag: int, out: Output
 ) -> bool:
     """Follow histories and energies to an accepted time, and deal with what has happened there.
 
@@ -44,7 +53,7 @@ def finish_step(
         Work space.
     flag : int
         0, `STOP` or `ROOT`.
-    events : ndarray, shape (n, EVENT_NUMBERS)
+    out : Output
         Of the block; see `has_room`.
 
     Returns
@@ -52,7 +61,7 @@ def finish_step(
     bool
         Whether the integration must restart from here.
     """
-    driver, t = m.work.driver, m.work.driver.time
+    driver, t, events = m.work.driver, m.work.driver.time, out.events
     accept(m, t, y)
     followers.step(m, t, y, yp, (flag != 0, flag == ROOT), between)
     if m.state.bound_exceeded != 0:
@@ -62,7 +71,7 @@ def finish_step(
     afresh = m.scene.kind == GEARS and abs(y[PHASE]) > PHASE_HIGH
     afresh |= change_wanted(m, y, yp) or comes_to_rest(m, t, y)
     if flag == ROOT:
-        afresh |= handle(m, t, y, yp, events)
+        afresh |= handle(m, t, y, yp, out)
         if m.scene.stop != 0 and stop_guard(m, t, y) <= 0.0:
             driver.done = 1
         if m.state.light != 0 and driver.done == 0 and driver.error == 0:
@@ -88,13 +97,14 @@ def finish_step(
 
 
 @compiled
-def handle(m: Model, t: float, y: Floats, yp: Floats, events: Floats) -> bool:
+def handle(m: Model, t: float, y: Floats, yp: Floats, out: Output) -> bool:
     """Deal with all guards that have fallen at t; whether the integration must begin anew there.
 
     The parameters are those of `finish_step`.
     """
-    driver, joined = m.work.driver, False
-    count, crossed, restart = handle_mesh(m, t, y, events, driver.events)
+    driver, events, joined = m.work.driver, out.events, False
+    first = driver.events
+    count, crossed, restart = handle_mesh(m, t, y, events, first)
     for i in range(list_known(m, y) if m.scene.population.flanks == 0 else 0):
         k = m.work.known[i]
         found = find_event(m, y, flank_of_history(m, k), m.state.history[k].pair, k)
@@ -106,7 +116,7 @@ def handle(m: Model, t: float, y: Floats, yp: Floats, events: Floats) -> bool:
         if flip_asperities(m, y):
             restart = True
             followers.flips(m, y)
-        count, too_many = record_flips(m, t, events, count)
+        count, too_many = record_flips(m, t, y, events, count)
         if too_many:
             driver.error = MANY_EVENTS
     if m.scene.friction.on != 0:
@@ -114,6 +124,8 @@ def handle(m: Model, t: float, y: Floats, yp: Floats, events: Floats) -> bool:
         restart |= jumped
     driver.events = count
     followers.resume(m, t, y, crossed, joined)
+    if crossed and m.scene.follow.passages != 0:
+        driver.passages = write_passages(m, t, y, events, (first, count), out.passages, driver.passages)
     if chatters(m, t):
         driver.error = CHATTER
     return restart

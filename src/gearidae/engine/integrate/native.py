@@ -141,7 +141,7 @@ def advance(place: int, arrays: Arrays, out: Output, budget: int) -> None:
     place : int
         Where the model lies, from `Located`; its ``work.driver`` says where the run stands.
     out : Output
-        Rows and events of this block.
+        Rows, events and passages of this block.
     budget : int
         Steps to do at most.
     """
@@ -153,7 +153,7 @@ def advance(place: int, arrays: Arrays, out: Output, budget: int) -> None:
         m.work.adams.wanted = m.work.adams.own
         driver.error = restart(s, next_stop(m))
         driver.pending = 0
-    while driver.error == 0 and driver.done == 0 and budget > 0 and has_room(driver.events, out.events):
+    while driver.error == 0 and driver.done == 0 and budget > 0 and has_room(driver.events, driver.passages, out):
         if driver.pending == 0:
             if driver.resting != 0:
                 looks = m.state.progress.guard_evaluations
@@ -171,7 +171,7 @@ def advance(place: int, arrays: Arrays, out: Output, budget: int) -> None:
             driver.pending = flag + 1
             break
         driver.pending = 0
-        afresh = finish_step(m, s.y, s.yp, (s.dky, s.spare), flag, out.events)
+        afresh = finish_step(m, s.y, s.yp, (s.dky, s.spare), flag, out)
         checkpoint = driver.since >= CHECKPOINT_STEPS
         if (afresh or checkpoint) and driver.done == 0 and driver.error == 0:
             _count(s)

@@ -88,9 +88,9 @@ def run(
             break
         y, yp = reached
         yield from _samples(solver, out, y)
-        if not has_room(driver.events, out.events):
+        if not has_room(driver.events, driver.passages, out):
             yield out.block(m, driver.time)
-        afresh = finish_step_at(solver.located.place, y, yp, between, flag, out.events)
+        afresh = finish_step_at(solver.located.place, y, yp, between, flag, out)
         if driver.error in MODEL_CHANGES:
             progress.restarts += 1
         checkpoint = driver.since >= CHECKPOINT_STEPS

@@ -20,6 +20,7 @@ from gearidae.engine.model.record_types import (
 from gearidae.records import COUNTERS, RUN_PARTS
 from gearidae.records.energy import ENERGY_SUMS
 from gearidae.records.extremes import ASPERITY_COUNTS, FORCE_EXTREMES, SPEED_EXTREMES
+from gearidae.records.passages import SINCE_LAST
 from gearidae.records.quantity import (
     COUNT_HIGH,
     ENERGY,
@@ -108,6 +109,11 @@ EXTREMES_FIELDS: Final = (  # at accepted times and located extrema
     Quantity("turn_back_time", "when it last did", TIME),
     Quantity("adhering", "all times from one such to the next in the same place", TIME),
     *FORCE_EXTREMES,
+)
+
+_PASSAGE_FIELDS = (
+    flag("begun", "1 once a force has been noted"),
+    *SINCE_LAST,
 )
 
 MOST_ZEROS: Final = 12
@@ -214,6 +220,9 @@ STATE_FIELDS: Final = (
     Quantity("energy", "energy balance", kind=ENERGY_SUMS),
     Quantity("progress", "counters of the driver", kind=PROGRESS_FIELDS),
     Quantity("extremes", "extremes of the run", kind=EXTREMES_FIELDS),
+    Quantity(
+        "passage", "what has been since the last mesh exit of each flank", kind=_PASSAGE_FIELDS, shape=(2,)
+    ),
     Quantity("standing", "where the gear stands, and what free gears would do", kind=_STANDING_FIELDS),
     Quantity("history", "histories of the tooth pairs", kind=HISTORY_FIELDS, shape=(2 * SLOTS_HIGH,)),
     *ASPERITY_COUNTS,

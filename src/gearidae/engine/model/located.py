@@ -20,6 +20,13 @@ _ARRAY: Any = types.Array(types.float64, 1, "C")
 _RECORDS: Final = tuple(from_dtype(dtype) for dtype in (SCENE, STATE, WORK))
 
 
+def _array_at(context: Any, builder: Any, data: Any, size: Any) -> Any:
+    """Code of an array of numbers that lie somewhere."""
+    made, stride = context.make_array(_ARRAY)(context, builder), ir.Constant(_WORD, 8)
+    populate_array(made, data, [size], [stride], stride, None)  # type: ignore[no-untyped-call]
+    return made._getvalue()
+
+
 def _model(typing: Any, address: Any) -> Any:
     """Type and code of a model, from where `note_addresses` has written.
 
@@ -34,11 +41,8 @@ def _model(typing: Any, address: Any) -> Any:
             return builder.load(builder.gep(base, [ir.Constant(_WORD, place)]))
 
         def array(place: int) -> Any:
-            made = context.make_array(_ARRAY)(context, builder)
             data = builder.inttoptr(load(place), ir.DoubleType().as_pointer())
-            size, stride = load(place + 1), ir.Constant(_WORD, 8)
-            populate_array(made, data, [size], [stride], stride, None)  # type: ignore[no-untyped-call]
-            return made._getvalue()
+            return _array_at(context, builder, data, load(place + 1))
 
         records = [
             builder.inttoptr(load(k), context.get_value_type(record)) for k, record in enumerate(_RECORDS)
@@ -60,6 +64,20 @@ def _address(typing: Any, record: Any) -> Any:
 _address_of: Any = intrinsic(_address)
 model_at: Any = intrinsic(_model)
 """A model of this process, from where `note_addresses` has written."""
+
+
+def _numbers(typing: Any, record: Any) -> Any:
+    """Type and code of the numbers of a record of real numbers only."""
+
+    def look(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        data = builder.bitcast(values[0], ir.DoubleType().as_pointer())
+        return _array_at(context, builder, data, ir.Constant(_WORD, record.size // 8))
+
+    return _ARRAY(record), look
+
+
+numbers_of: Any = intrinsic(_numbers)
+"""The numbers of a record that has real numbers only, as an array that looks at them, in compiled code."""
 
 POINTERS: Final = 7
 """Words that locate a model in memory: addresses of its records, address and length of its arrays."""

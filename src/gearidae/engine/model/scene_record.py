@@ -123,6 +123,7 @@ FOLLOW: Final = record_type(  # 1 for each follower of the run that is wanted
     ("friction", INT),  # losses by friction, for it
     ("extremes", INT),  # extremes of the run
     ("exposures", INT),  # exposures of the flanks
+    ("passages", INT),  # table of passages
 )
 
 _PER_SPEED: Final = Unit("F tau/sigma", "N s m-1", force=1, length=-1, time=1)
@@ -238,6 +239,8 @@ SCENE: Final = record_type(
     ("balance_steps", INT),  # accepted steps that the energy balance integrates over at once [1]
     ("balance_span", REAL),  # over which they may last [tau]
     ("balance_error", REAL),  # error over throughput from which on it takes single steps [1]
+    ("corner_margin", REAL),  # share by which a force at an event may miss a record before the law is asked [1]
+    ("vertex_margin", REAL),  # EXP
     ("flight_parts", INT),  # into which it divides a step in flight [1]
     # last, so that what every step reads lies as close together as without it
     ("population", POPULATION),  # real asperities on the flanks

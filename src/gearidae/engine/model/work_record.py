@@ -95,6 +95,7 @@ DRIVER: Final = record_type(
     ("time", REAL),  # reached [tau]
     ("rows", INT),  # samples in the present block
     ("events", INT),  # events in the present block
+    ("passages", INT),  # passages in the present block
     ("pending", INT),  # flag of a step that waits for room, plus 1; 0 for none, -1 for a start
     ("done", INT),  # 1 at the end of the run
     ("error", INT),  # IDA's flag, or one of the driver's own

@@ -131,6 +131,13 @@ def forces_at(m: Model, t: float, y: Floats) -> MeshForces:
     return mesh_forces(m, t, y, False)
 
 
+@compiled_once(SOLVER)
+def force_of_one(m: Model, t: float, y: Floats, coast: int, number: int) -> float:
+    """Force of a single pair along the line of action by all laws of the scene, positive where its flanks push."""
+    pair = state_of_pair(m, coast, number, y)
+    return force_of_pair(m, t, y, pair, False).load if acts(m, pair) else 0.0
+
+
 # -- slopes along which deflections follow ---------------------------------------------------------------------------
 
 

@@ -335,6 +335,7 @@ def _begun(m: Model, scene: Scene, motion: list[float], skipped: dict[str, int])
         settle_nodes(m, 0.0, y)
     begin(m, 0.0, y)
     s.follow.balance, s.follow.extremes, s.follow.exposures = scene.run.balance, 1, s.bins > 0
+    s.follow.passages = int(scene.run.passages and s.kind == GEARS)
     s.follow.friction = int(scene.run.balance and s.friction.rubs != 0)
     if s.follow.balance != 0:
         open_balance(m, y)

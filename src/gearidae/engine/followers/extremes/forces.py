@@ -11,7 +11,7 @@ from typing import Final
 
 from gearidae.compiled import compiled
 from gearidae.engine.formulas.interpolation import cubic, quintic, vertex
-from gearidae.engine.model.state import DRIVE, GEARS, PHASE, ROLLER, Floats, Model, Record, U, V, W
+from gearidae.engine.model.state import COAST, DRIVE, GEARS, PHASE, ROLLER, Floats, Model, Record, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.pairs.tooth_pairs import in_flight, static_error
@@ -21,6 +21,7 @@ NEAR_RECORD: Final = 0.1
 """Share of a record by which the parabola may miss it: it has been seen to be out by 3 % at loose tolerances."""
 EVALUATIONS: Final = 3
 """Number of forces evaluated between accepted times, at a maximum of adhesion that may be a record."""
+FLANKS: Final = 2
 _CLOSE: Final = 1e-3
 """Share of the span over which two evaluations are alike: the force changes by a millionth of its own."""
 
@@ -73,10 +74,10 @@ def note_corner(m: Model, point: Record, y: Floats) -> None:
     The state at an event within a step is that of the step's polynomial, whose rates go over the corner that the force
     may have there: where it may be a record the contact law is asked.
     """
-    e, force = m.state.extremes, point.force
-    margin = NEAR_RECORD * abs(force)
-    if force + margin > e.largest_force or force - margin < e.smallest_force:
-        force = _force_of_law(m, point.time, y)
+    force, (largest, smallest) = point.force, _records(m)
+    margin = m.scene.corner_margin * abs(force)
+    if force + margin > largest or force - margin < smallest:
+        force = force_of_law(m, point.time, y)
     _note_force(m, point.time, force)
 
 
@@ -107,8 +108,9 @@ def _look_between(m: Model, before: Record, last: Record, now: Record, spare: Fl
     """
     t0, f0, t1, f1, t2, f2 = before.time, before.force, last.time, last.force, now.time, now.force
     t, force, bend = vertex(t0, f0, t1, f1, t2, f2)
-    record = m.state.extremes.largest_force if bend < 0.0 else m.state.extremes.smallest_force
-    if (force - record) * bend > NEAR_RECORD * abs(record * bend):
+    largest, smallest = _records(m)
+    record = largest if bend < 0.0 else smallest
+    if (force - record) * bend > m.scene.vertex_margin * abs(record * bend):
         return
     if m.scene.nodes > 0:  # their deflections between accepted times are not known
         _note_force(m, t, force)
@@ -139,11 +141,11 @@ def _force_between(m: Model, before: Record, last: Record, now: Record, t: float
     if m.scene.kind == GEARS:
         y[PHASE] = cubic(s, h, p.position, scale * p.speed, q.position, scale * q.speed) - m.state.turns
         y[W] = cubic(s, h, p.speed, p.speed_rate, q.speed, q.speed_rate)
-    return float(_force_of_law(m, t, y))
+    return float(force_of_law(m, t, y))
 
 
 @compiled
-def _force_of_law(m: Model, t: float, y: Floats) -> float:
+def force_of_law(m: Model, t: float, y: Floats) -> float:
     """Force at a state, by the contact law, mesh damping included."""
     return float(forces_at(m, t, y).force + m.scene.damping * y[V])
 
@@ -155,3 +157,24 @@ def _note_force(m: Model, t: float, force: float) -> None:
         e.largest_force, e.largest_force_time = force, t
     if force < e.smallest_force:
         e.smallest_force, e.smallest_force_time = force, t
+    if m.scene.follow.passages != 0:
+        for flank in range(FLANKS):
+            note_since(m, flank, force)
+
+
+@compiled
+def note_since(m: Model, flank: int, force: float) -> None:
+    """Note a force since the last mesh exit of a flank."""
+    p = m.state.passage[flank]
+    if p.begun == 0:
+        p.begun, p.largest_force, p.smallest_force = 1, force, force
+    p.largest_force, p.smallest_force = max(p.largest_force, force), min(p.smallest_force, force)
+
+
+@compiled
+def _records(m: Model) -> tuple[float, float]:
+    """Largest and smallest force so far: of the run, or since the last mesh exits where these are kept."""
+    if m.scene.follow.passages == 0:
+        return m.state.extremes.largest_force, m.state.extremes.smallest_force
+    one, other = m.state.passage[DRIVE], m.state.passage[COAST]
+    return min(one.largest_force, other.largest_force), max(one.smallest_force, other.smallest_force)

@@ -1,0 +1,161 @@
+"""Rows of runs in datasets, events and passages: along a dimension of their own, labelled by their runs."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Hashable, Iterator, Mapping, Sequence
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from gearidae.archive.variables import PLACES, POPULATION_EVENTS, ROW_VARIABLES
+from gearidae.records import ROWS, Flank, Rows, Solution
+from gearidae.scene import Scene
+from gearidae.scene.sampled import rows_of
+
+DIMS = tuple(kind.dim for kind in ROWS)
+"""Dimensions of rows."""
+LABELS = ("time", *DIMS, *PLACES)
+"""Coordinates that label no runs."""
+
+
+def kinds_in(ds: xr.Dataset) -> Iterator[type[Rows]]:
+    """Kinds of rows that a dataset has."""
+    return (kind for kind in ROWS if kind.dim in ds.dims)
+
+
+def needed(kind: type[Rows]) -> tuple[str, ...]:
+    """Variables that rows of a kind have in archives of every version that knows the kind."""
+    names = [name for name, column in kind.columns.items() if column.missing is None]
+    return tuple(f"{kind.dim}_{name}" for name in (*names, "sam_fraction"))
+
+
+def teeth_in(attributes: Mapping[str, Any]) -> int:
+    """Teeth of the pinion in a dataset's scene, as its attributes have it; 1 for a roller."""
+    return int(json.loads(attributes["scene"]).get("gears", {}).get("pinion_teeth", 1))
+
+
+def archived(rows: Rows, teeth: int, fraction: float) -> dict[str, NDArray[Any]]:
+    """Values of rows of one run by the names of their variables.
+
+    Parameters
+    ----------
+    teeth : int
+        Of the pinion; 1 for a roller. The tooth of a row of no flank is -1.
+    fraction : float
+        SAM fraction of the run.
+    """
+    values = {name: getattr(rows, name) for name in rows.columns}
+    values["tooth"] = np.where(rows.flank != Flank.NONE, rows.pair % teeth, -1)
+    values["sam_fraction"] = np.full(len(rows), fraction)
+    return {f"{rows.dim}_{name}": each for name, each in values.items()}
+
+
+def row_variables(
+    kind: type[Rows],
+    scenes: Sequence[Scene],
+    solutions: Sequence[Solution],
+    labels: Mapping[str, xr.Variable] | None = None,
+) -> dict[Hashable, Any]:
+    """Make the variables of the rows of all runs, one run after the other.
+
+    Parameters
+    ----------
+    kind : type of Rows
+    scenes, solutions : sequence
+        The runs; the last label changes fastest.
+    labels : mapping of str to Variable, optional
+        Values of each swept dimension.
+
+    Returns
+    -------
+    dict
+        Name to dimension, values and attributes; empty if no run leaves such rows.
+    """
+    if not any(kind in rows_of(scene) for scene in scenes):
+        return {}
+    parts = [
+        archived(
+            getattr(solution, kind.field),
+            1 if scene.gears is None else scene.gears.pinion_teeth,
+            scene.coating.sam_fraction,
+        )
+        for scene, solution in zip(scenes, solutions, strict=True)
+    ]
+    discrete = any(scene.contact.is_discrete for scene in scenes)
+    made: dict[Hashable, Any] = {}
+    for name, variable in ROW_VARIABLES[kind].items():
+        if discrete or name not in POPULATION_EVENTS:
+            values = np.concatenate([part[name] for part in parts]).astype(variable.dtype, copy=False)
+            made[name] = ((kind.dim,), values, variable.attributes)
+    labels = labels or {}
+    counts = [len(getattr(solution, kind.field)) for solution in solutions]
+    shape = tuple(label.size for label in labels.values())
+    for position, (dim, label) in enumerate(labels.items()):
+        if dim != "sam_fraction":
+            index = np.unravel_index(np.arange(len(solutions)), shape)[position]
+            attributes = {
+                "long_name": f"{dim} of the run the {kind.dim} belongs to",
+                "units": label.attrs["units"],
+            }
+            made[f"{kind.dim}_{dim}"] = ((kind.dim,), np.repeat(label.values[index], counts), attributes)
+    return made
+
+
+def rows_from(run: xr.Dataset, kind: type[Rows]) -> Rows:
+    """Rows of a single run's dataset; none where it has none."""
+    if kind.dim not in run.dims:
+        return kind.none()
+    named = {name: f"{kind.dim}_{name}" for name in kind.columns}
+    return kind(**{name: run[full].values for name, full in named.items() if full in run})
+
+
+def own_rows(ds: xr.Dataset) -> xr.Dataset:
+    """Drop the rows of other runs, which xarray leaves behind when runs are picked from a sweep.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Runs of a sweep, or one of them.
+
+    Returns
+    -------
+    xarray.Dataset
+        With the events and passages only that carry the labels of its runs.
+    """
+    for kind in kinds_in(ds) if "swept" in ds.attrs else ():
+        own = np.ones(ds.sizes[kind.dim], dtype=bool)
+        for name in map(str, ds.coords):
+            label = f"{kind.dim}_{name}"
+            if name not in LABELS and label in ds.variables and ds[name].ndim < 2:
+                own &= np.isin(ds[label].values, ds[name].values)
+        ds = ds if own.all() else ds.isel({kind.dim: own})
+    return ds
+
+
+def row_places(ds: xr.Dataset, dims: tuple[str, ...]) -> dict[str, list[Any]]:
+    """Places of each run's rows, found in one pass, by the rows' dimensions.
+
+    Those are left out of which labels do not tell the runs apart.
+    """
+    indexes = [ds.get_index(dim) for dim in dims]
+    shape = tuple(ds.sizes[dim] for dim in dims)
+    if not dims or not all(index.is_unique for index in indexes):
+        return {}
+    found: dict[str, list[Any]] = {}
+    for kind in kinds_in(ds):
+        labels = [f"{kind.dim}_{dim}" for dim in dims]
+        if any(label not in ds.variables for label in labels):
+            continue
+        places = [index.get_indexer(ds[label].values) for index, label in zip(indexes, labels, strict=True)]
+        number = np.ravel_multi_index(places, shape) if len(places[0]) else np.empty(0, dtype=np.int64)
+        order = np.argsort(number, kind="stable")
+        bounds = pairwise(np.searchsorted(number[order], np.arange(int(np.prod(shape)) + 1)))
+        if np.array_equal(order, np.arange(len(order))):
+            found[kind.dim] = [slice(first, last) for first, last in bounds]
+        else:
+            found[kind.dim] = [order[first:last] for first, last in bounds]
+    return found
