@@ -7,10 +7,28 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, EventKind, Events, Flank, Solution, Statistics
+from gearidae.records import (
+    GEAR_COLUMNS,
+    ROLLER_COLUMNS,
+    EventKind,
+    Events,
+    Flank,
+    Passages,
+    Solution,
+    Statistics,
+)
+from gearidae.records.passages import PASSAGE
 from gearidae.scene import Scene
+from gearidae.scene.sampled import rows_of
 
 MakeSolution = Callable[..., Solution]
+
+
+def made_up_passages(count: int) -> Passages:
+    """Passages with numbers that tell columns and rows apart, on both flanks in turn."""
+    table = np.arange(1.0, 1.0 + count * len(Passages.columns)).reshape(count, -1)
+    table[:, PASSAGE.flank] = np.arange(count) % 2
+    return Passages.of_table(table)
 
 
 @pytest.fixture
@@ -38,6 +56,7 @@ def make_solution() -> MakeSolution:
                 flank=np.full(size, Flank.DRIVE, dtype=np.int8),
                 gap_rate=np.full(size, -1e-6),
             ),
+            passages=made_up_passages(impacts) if Passages in rows_of(scene) else Passages.none(),
             statistics=Statistics(
                 steps=100,
                 residual_evaluations=200,

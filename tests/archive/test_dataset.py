@@ -24,6 +24,7 @@ from gearidae.records import (
     EventKind,
     Statistics,
 )
+from gearidae.records.energy import TERMS
 from gearidae.runs.running import unsolved
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.samples": 101})
@@ -49,7 +50,13 @@ GEAR_LAYOUT = {
     "event_pair": ("event", "1"),
     "event_flank": ("event", "1"),
     "event_gap_rate": ("event", "m s-1"),
+    "event_force": ("event", "N"),
     "event_sam_fraction": ("event", "1"),
+    **{f"passage_{name}": ("passage", "1") for name in ("pair", "tooth", "flank", "impacts", "sam_fraction")},
+    "passage_time": ("passage", "s"),
+    "passage_largest_force": ("passage", "N"),
+    "passage_smallest_force": ("passage", "N"),
+    **{f"passage_{name}": ("passage", "J") for name in TERMS},
 }
 ROLLER_LAYOUT = {
     "reached": ("s",),
@@ -244,3 +251,5 @@ def test_events_of_other_runs_stay_out_of_a_selection(make_solution):
     ds = combine(LOW, {"coating.sam_fraction": fractions}, scenes, solutions)
     ((_, run),) = runs(ds.sel(sam_fraction=0.5))
     assert (run.event_kind == EventKind.ONSET).sum() == 4
+    assert run.sizes["passage"] == 4
+    assert (run.passage_sam_fraction == 0.5).all()

@@ -55,7 +55,7 @@ def step(
     if m.scene.follow.friction != 0:
         rubbing.book_rubbing(m, t, y, at[1], between[0], between[1])
     if m.scene.follow.extremes != 0:
-        extremes.step(m, t, y, yp, at[0], between[0])
+        extremes.step(m, t, y, yp, at[0], between)
     if m.scene.follow.balance != 0:
         balance.step(m, t, y, yp, at, between)
     if m.scene.follow.exposures != 0:

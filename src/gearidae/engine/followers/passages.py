@@ -13,6 +13,7 @@ import numpy as np
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
+from gearidae.engine.events.mesh_marks import MARKS
 from gearidae.engine.followers.balance import note_changes
 from gearidae.engine.followers.extremes.forces import force_of_law, note_since
 from gearidae.engine.model.located import numbers_of
@@ -24,7 +25,7 @@ from gearidae.records.quantity import Quantity
 
 PASSAGE_NUMBERS: Final = len(PASSAGE)
 """Numbers of a passage."""
-PASSAGES_AT_ONCE: Final = 4
+PASSAGES_AT_ONCE: Final = MARKS
 """Most that can be at one accepted time: one for each kind of mesh mark."""
 _MESH_EXIT: Final = float(EventKind.MESH_EXIT)
 _KIND, _PAIR, _FLANK = EVENT.kind, EVENT.pair, EVENT.flank
@@ -44,14 +45,15 @@ _SUMS: Final = _words(STATE["energy"], SUMS)
 _CHANGES: Final = _words(WORK["energy_now"], CHANGES)
 _FIRST_SUM: Final = PASSAGE_NUMBERS - len(_SUMS) - len(_CHANGES)
 _FIRST_CHANGE: Final = PASSAGE_NUMBERS - len(_CHANGES)
+_UNITS: Final = tuple(dict.fromkeys(each.unit for each in COLUMNS))
+_UNIT_OF: Final = np.array([_UNITS.index(each.unit) for each in COLUMNS for _ in each.names])
 _ADHESION: Final = PASSAGE.adhesion_loss
 _RADIUS: Final = PASSAGE.radius_work
 
 
 def units(scene: Record) -> Floats:
     """Units of the columns in SI units, of a scene."""
-    known = {unit: unit.in_si(scene) for unit in {each.unit for each in COLUMNS}}
-    return np.array([known[each.unit] for each in COLUMNS for _ in each.names])
+    return np.array([unit.in_si(scene) for unit in _UNITS])[_UNIT_OF]
 
 
 @compiled

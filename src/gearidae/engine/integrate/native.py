@@ -153,7 +153,12 @@ def advance(place: int, arrays: Arrays, out: Output, budget: int) -> None:
         m.work.adams.wanted = m.work.adams.own
         driver.error = restart(s, next_stop(m))
         driver.pending = 0
-    while driver.error == 0 and driver.done == 0 and budget > 0 and has_room(driver.events, driver.passages, out):
+    while (
+        driver.error == 0
+        and driver.done == 0
+        and budget > 0
+        and has_room(driver.events, driver.passages, out)
+    ):
         if driver.pending == 0:
             if driver.resting != 0:
                 looks = m.state.progress.guard_evaluations

@@ -239,8 +239,6 @@ SCENE: Final = record_type(
     ("balance_steps", INT),  # accepted steps that the energy balance integrates over at once [1]
     ("balance_span", REAL),  # over which they may last [tau]
     ("balance_error", REAL),  # error over throughput from which on it takes single steps [1]
-    ("corner_margin", REAL),  # share by which a force at an event may miss a record before the law is asked [1]
-    ("vertex_margin", REAL),  # EXP
     ("flight_parts", INT),  # into which it divides a step in flight [1]
     # last, so that what every step reads lies as close together as without it
     ("population", POPULATION),  # real asperities on the flanks

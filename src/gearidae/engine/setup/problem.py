@@ -9,7 +9,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from gearidae.engine.followers.exposures.bins import exposures_of
-from gearidae.engine.followers.extremes.forces import NEAR_RECORD
 from gearidae.engine.followers.extremes.units import extremes_in_si
 from gearidae.engine.followers.in_turn import look_at
 from gearidae.engine.model.located import Located
@@ -38,8 +37,6 @@ from gearidae.records.quantity import in_si
 
 ERRORS = 5.0  # in relative tolerances: where the energy balance may be out by more, it integrates over single steps
 PARTS_RTOL = 1e-6  # relative tolerance below which it divides steps in flight
-CORNER = 10.0
-"""Largest relative error of a force at an event, over the root of the tolerance."""
 PARTS_OF_PERIOD = 24
 """Steps of free gears in a period of the fastest harmonic at least,"""
 PARTS_OF_LAW = 4096
@@ -125,8 +122,6 @@ class Problem:
         s.first_sample = first_sample(float(s.start), float(s.end), samples)
         m.rows[first : first + self.start.size] = 1.0 / (rtol * self.tolerance_scale)
         s.balance_error = ERRORS * rtol
-        s.corner_margin = min(NEAR_RECORD, CORNER * math.sqrt(rtol))
-        s.vertex_margin = NEAR_RECORD
         s.flight_parts = math.ceil((PARTS_RTOL / rtol) ** (1.0 / 8.0))
         if s.kind == GEARS:
             s.friction.blur = rtol * float(self.tolerance_scale[U])

@@ -19,7 +19,7 @@ from gearidae.engine.motion.separation import rigid_separation, separation
 
 
 @compiled(inline=True)
-def step(m: Model, t: float, y: Floats, yp: Floats, event: bool, spare: Floats) -> None:
+def step(m: Model, t: float, y: Floats, yp: Floats, event: bool, between: tuple[Floats, Floats]) -> None:
     """Follow the extremes to an accepted time, before its events are handled.
 
     Parameters
@@ -30,7 +30,7 @@ def step(m: Model, t: float, y: Floats, yp: Floats, event: bool, spare: Floats) 
         State and rates there.
     event : bool
         Whether something happens there: the force may have a corner, over which no polynomial is laid.
-    spare : ndarray, shape (n,)
+    between : tuple of two ndarrays, shape (n,)
         Work space.
     """
     k = m.work.track
@@ -43,7 +43,7 @@ def step(m: Model, t: float, y: Floats, yp: Floats, event: bool, spare: Floats) 
             standing.step(m, here, y)
         _follow_separation(m, last, now, y)
         if k.smooth > 1:
-            follow_force(m, k.point[k.last - 1 if k.last > 0 else 2], last, now, spare)
+            follow_force(m, k.point[k.last - 1 if k.last > 0 else 2], last, now, between)
         k.time, k.last = t, here
         k.smooth += 1
     if event:

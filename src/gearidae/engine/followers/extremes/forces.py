@@ -2,7 +2,8 @@
 
 Most extremes of the force lie where a pair turns round, which is an event and hence an accepted time. What is left are
 maxima of adhesion, passed within a few steps. A parabola through three accepted forces shows whether one was passed
-that may be a record. Only then the contact law is evaluated between these times.
+that may be a record of the run. Only then the contact law is evaluated between these times. What may be a record since
+the last mesh exit is far more often passed; there the rates of the step's formula give the force, to some 1e-5 of it.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 from typing import Final
 
 from gearidae.compiled import compiled
+from gearidae.engine.formulas import adams
 from gearidae.engine.formulas.interpolation import cubic, quintic, vertex
 from gearidae.engine.model.state import COAST, DRIVE, GEARS, PHASE, ROLLER, Floats, Model, Record, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
@@ -75,21 +77,21 @@ def note_corner(m: Model, point: Record, y: Floats) -> None:
     may have there: where it may be a record the contact law is asked.
     """
     force, (largest, smallest) = point.force, _records(m)
-    margin = m.scene.corner_margin * abs(force)
+    margin = NEAR_RECORD * abs(force)
     if force + margin > largest or force - margin < smallest:
         force = force_of_law(m, point.time, y)
     _note_force(m, point.time, force)
 
 
 @compiled(inline=True)
-def follow_force(m: Model, before: Record, last: Record, now: Record, spare: Floats) -> None:
+def follow_force(m: Model, before: Record, last: Record, now: Record, between: tuple[Floats, Floats]) -> None:
     """Follow the force over three successive accepted times, between which it has no corner.
 
     Parameters
     ----------
     before, last, now : record
         ``POINT`` of these times.
-    spare : ndarray, shape (n,)
+    between : tuple of two ndarrays, shape (n,)
         Work space.
     """
     # times a b (a + b), the slopes at both ends of the parabola through the three forces
@@ -97,26 +99,35 @@ def follow_force(m: Model, before: Record, last: Record, now: Record, spare: Flo
     rise, next_rise = b * (last.force - before.force), a * (now.force - last.force)
     bend = next_rise - rise
     if (rise * (a + b) - bend * a) * (next_rise * (a + b) + bend * b) < 0.0:
-        _look_between(m, before, last, now, spare)
+        _look_between(m, before, last, now, between)
 
 
 @compiled
-def _look_between(m: Model, before: Record, last: Record, now: Record, spare: Floats) -> None:
+def _look_between(
+    m: Model, before: Record, last: Record, now: Record, between: tuple[Floats, Floats]
+) -> None:
     """Look for a record of the force near the vertex of the parabola through three accepted ones.
 
     Each force that is found takes the place of the outer point that is further away.
     """
     t0, f0, t1, f1, t2, f2 = before.time, before.force, last.time, last.force, now.time, now.force
     t, force, bend = vertex(t0, f0, t1, f1, t2, f2)
-    largest, smallest = _records(m)
-    record = largest if bend < 0.0 else smallest
-    if (force - record) * bend > m.scene.vertex_margin * abs(record * bend):
-        return
+    e = m.state.extremes
+    by_law = _may_be_record(force, bend, e.largest_force, e.smallest_force)
+    if not by_law:
+        largest, smallest = _records(m)
+        if not _may_be_record(force, bend, largest, smallest):
+            return
+        by_law = m.work.adams.order_used < 2
     if m.scene.nodes > 0:  # their deflections between accepted times are not known
         _note_force(m, t, force)
         return
     for _ in range(EVALUATIONS):
-        force = _force_between(m, before, last, now, t, spare)
+        if by_law:
+            force = _force_between(m, before, last, now, t, between[0])
+        else:
+            adams.between(m.work.adams, t, between[0], between[1])
+            force = force_of_motion(m, t, between[0], between[1])
         _note_force(m, t, force)
         if t - t0 > t2 - t:
             t0, f0 = t, force
@@ -127,6 +138,13 @@ def _look_between(m: Model, before: Record, last: Record, now: Record, spare: Fl
         t, force, _ = vertex(t0, f0, t1, f1, t2, f2)
         if not before.time < t < now.time:
             return
+
+
+@compiled(inline=True)
+def _may_be_record(force: float, bend: float, largest: float, smallest: float) -> bool:
+    """Whether the vertex of a parabola may be a record: a largest one where it bends down."""
+    record = largest if bend < 0.0 else smallest
+    return bool((force - record) * bend <= NEAR_RECORD * abs(record * bend))
 
 
 @compiled
