@@ -186,9 +186,9 @@ def roller_run(speed, force, *, impacts, lets_go):
     solution.samples.update(speed=speed, force=force)
     if impacts and not lets_go:
         events = solution.events
-        kept = {field.name: getattr(events, field.name)[:-1] for field in dataclasses.fields(events)}
+        kept = {name: getattr(events, name)[:-1] for name in events.columns}
         assert kept["kind"][-1] == EventKind.ONSET
-        solution = dataclasses.replace(solution, events=dataclasses.replace(events, **kept))
+        solution = dataclasses.replace(solution, events=Events(**kept))
     return to_dataset(ROLLER, with_extremes(ROLLER, solution))
 
 

@@ -26,7 +26,8 @@ MakeSolution = Callable[..., Solution]
 
 def made_up_passages(count: int) -> Passages:
     """Passages with numbers that tell columns and rows apart, on both flanks in turn."""
-    table = np.arange(1.0, 1.0 + count * len(Passages.columns)).reshape(count, -1)
+    columns = len(Passages.columns)
+    table = np.arange(1.0, 1.0 + count * columns).reshape(count, columns)
     table[:, PASSAGE.flank] = np.arange(count) % 2
     return Passages.of_table(table)
 

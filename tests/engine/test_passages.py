@@ -85,8 +85,9 @@ def test_both_drivers_agree():
     assert len(native_run.passages) == len(other.passages) > 2
     for name in Passages.columns:
         one, two = getattr(native_run.passages, name), getattr(other.passages, name)
-        # both are as accurate as their tolerance makes the motion, over the largest of their numbers
-        np.testing.assert_allclose(one, two, rtol=0.0, atol=1e-5 * max(np.abs(one).max(), 1e-300))
+        # as accurate as the motion, over the largest of the numbers; peaks of the force as the step's formula
+        accuracy = 1e-4 if name.endswith("_force") else 1e-6
+        np.testing.assert_allclose(one, two, rtol=0.0, atol=accuracy * max(np.abs(one).max(), 1e-300))
 
 
 def test_without_passages_the_run_is_the_same(backend):
@@ -142,7 +143,7 @@ def test_all_terms_of_the_balance_are_there():
 
 def test_energy_per_tooth_needs_no_chain_of_runs():
     """Over a start-up from rest: the differences of the rows, and of the balances of runs from exit to exit."""
-    scene = LOW.replace({"initial.gear_speed": 0.0, "run.duration": 0.1, "run.rtol": 1e-8})
+    scene = LOW.replace({"initial.gear_speed": 0.0, "run.duration": 0.2, "run.rtol": 1e-8})
     rows = solve(scene).passages
     drive = np.flatnonzero(rows.flank == 0)[:3]
     assert len(drive) == 3

@@ -10,8 +10,9 @@ import numpy as np
 import xarray as xr
 
 from gearidae.archive.energy import balance_of
+from gearidae.archive.rows import DIMS
 from gearidae.archive.select import run_scene, run_value, runs, swept_dims
-from gearidae.archive.variables import ENERGY_BALANCE, EVENTS, EXTREMES, OF_SWEPT_RUN, RUN
+from gearidae.archive.variables import ENERGY_BALANCE, EVENTS, EXTREMES, OF_SWEPT_RUN, PASSAGES, RUN
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.records import EventKind
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 COLUMNS: Final = ("difference", "scale", "relative", "where")
 _LEFT_OUT: Final = {*RUN, *OF_SWEPT_RUN, *EVENTS, "residual", "residual_bound"}
 """What tells of the effort and of the errors of a run, and not of its motion; events are compared as a sequence."""
+_WHICH: Final = ("pair", "flank", "tooth", "sam_fraction")
+"""What says which passage it is."""
 _EXCHANGED: Final = ("stored_change", "kinetic_change", "radius_work", "model_change")
 """Energies of either sign, which may cancel: their scale is that of all that has been exchanged."""
 
@@ -51,8 +54,9 @@ def compare(a: xr.Dataset, b: xr.Dataset) -> pd.DataFrame:
         and ``relative`` the same over ``scale``; ``where`` names the sample, the label or the event. Samples and losses
         have their largest magnitude as scale, speeds, forces and times of a run the largest speed, the largest force
         and the duration, energies of either sign all that has been exchanged. The row ``events`` has the largest
-        difference of the times of events that are the same one by one, or infinity at the first that is another. NaN
-        equals NaN. Solver statistics, dates and the residual of the energy balance are left out.
+        difference of the times of events that are the same one by one, or infinity at the first that is another.
+        Passages have a row for each of their variables, or where they are not of the same pairs ``passages`` has
+        infinity. NaN equals NaN. Solver statistics, dates and the residual of the energy balance are left out.
 
     Raises
     ------
@@ -127,12 +131,14 @@ def _differences(a: xr.Dataset, b: xr.Dataset) -> Iterator[tuple[str, Difference
         yield name, _largest(np.array([one[name]]), np.array([other[name]]), scales.get(name))
     for key, variable in a.data_vars.items():
         name = str(key)
-        if name in one or name in _LEFT_OUT or name not in b.data_vars or "event" in variable.dims:
+        if name in one or name in _LEFT_OUT or name not in b.data_vars or {*DIMS} & {*variable.dims}:
             continue
         if variable.dtype.kind in "fiu" and variable.dims == b[name].dims:
             yield name, _of_samples(variable, b[name])
     if "event_time" in a and "event_time" in b:
         yield "events", _of_events(a, b)
+    if "passage_time" in a and "passage_time" in b:
+        yield from _of_passages(a, b, scales)
 
 
 def _word(run: xr.Dataset, name: str) -> Any:
@@ -256,6 +262,26 @@ def _of_events(a: xr.Dataset, b: xr.Dataset) -> Difference:
     difference, place = _where_largest(a["event_time"].values, b["event_time"].values)
     at = f"in order, event {place[0]}: {_event_words(a, place[0])}" if common else "in order, no events"
     return Difference(difference, span, _relative(difference, span), at)
+
+
+def _of_passages(
+    a: xr.Dataset, b: xr.Dataset, scales: Mapping[str, float]
+) -> Iterator[tuple[str, Difference]]:
+    """Compare passages one by one, over the scales of the whole run; infinite where they are not of the same pairs."""
+    one, two = (np.stack([run["passage_pair"].values, run["passage_flank"].values]) for run in (a, b))
+    if not np.array_equal(one, two):
+        common = min(one.shape[1], two.shape[1])
+        other = (one[:, :common] != two[:, :common]).any(axis=0)
+        first = int(np.argmax(other)) if other.any() else common
+        yield "passages", Difference(math.inf, math.nan, math.inf, f"passage {first}: not of the same pair")
+        return
+    by_unit = {"N": scales.get("largest_mesh_force", 0.0), "s": max(_duration(a), _duration(b))}
+    for name, variable in PASSAGES.items():
+        if name in a and name in b and name.removeprefix("passage_") not in _WHICH:
+            found = _of_samples(a[name], b[name])
+            total = scales.get(name.removeprefix("passage_"), by_unit.get(variable.units, 0.0))
+            size = max(found.scale, total)
+            yield name, found._replace(scale=size, relative=_relative(found.difference, size))
 
 
 def _event_words(run: xr.Dataset, number: int) -> str:
