@@ -56,7 +56,7 @@ def force_of_motion(m: Model, t: float, y: Floats, yp: Floats) -> float:
 def _force_with_friction(m: Model, t: float, y: Floats) -> float:
     """Force by the contact law, which the losses by friction have just asked at the same time."""
     r = m.work.rubbing
-    return float(r.force) if m.scene.follow.friction != 0 and r.time == t else float(_force_of_law(m, t, y))
+    return float(r.force) if m.scene.follow.friction != 0 and r.time == t else float(force_of_law(m, t, y))
 
 
 @compiled
@@ -113,16 +113,19 @@ def _look_between(
     t0, f0, t1, f1, t2, f2 = before.time, before.force, last.time, last.force, now.time, now.force
     t, force, bend = vertex(t0, f0, t1, f1, t2, f2)
     e = m.state.extremes
-    by_law = _may_be_record(force, bend, e.largest_force, e.smallest_force)
+    record = e.largest_force if bend < 0.0 else e.smallest_force
+    by_law = (force - record) * bend <= NEAR_RECORD * abs(record * bend)
     if not by_law:
         largest, smallest = _records(m)
-        if not _may_be_record(force, bend, largest, smallest):
+        # the parabola is out by less than what it adds to the accepted forces
+        farthest = 2.0 * force - (max(f0, f1, f2) if bend < 0.0 else min(f0, f1, f2))
+        if smallest <= farthest <= largest:
             return
         by_law = m.work.adams.order_used < 2
     if m.scene.nodes > 0:  # their deflections between accepted times are not known
         _note_force(m, t, force)
         return
-    for _ in range(EVALUATIONS):
+    for _ in range(EVALUATIONS if by_law else 1):
         if by_law:
             force = _force_between(m, before, last, now, t, between[0])
         else:
@@ -138,13 +141,8 @@ def _look_between(
         t, force, _ = vertex(t0, f0, t1, f1, t2, f2)
         if not before.time < t < now.time:
             return
-
-
-@compiled(inline=True)
-def _may_be_record(force: float, bend: float, largest: float, smallest: float) -> bool:
-    """Whether the vertex of a parabola may be a record: a largest one where it bends down."""
-    record = largest if bend < 0.0 else smallest
-    return bool((force - record) * bend <= NEAR_RECORD * abs(record * bend))
+    if not by_law:
+        _note_force(m, t, force)
 
 
 @compiled
