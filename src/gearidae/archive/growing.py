@@ -81,8 +81,7 @@ class GrowingArchive:
         self._kinds = tuple(kinds_in(template))
         self._teeth = teeth_in(template.attrs)
         self._checkpointed = time.monotonic()
-        self._nothing = {dim: 0 for dim in COUNTS if dim in template.dims}
-        self.lengths = self._nothing
+        self.lengths = self._nothing = {dim: 0 for dim in COUNTS if dim in template.dims}
         self._commits = Commit()
         with disk_errors():
             self._open()

@@ -330,16 +330,9 @@ def _note_resistance(m: Model, t: float, gear: float, y: Floats, yp: Floats) -> 
 
 @compiled
 def note_changes(m: Model, y: Floats) -> tuple[float, float]:
-    """Note the changes of the energies up to a state to which the sums have been brought.
-
-    Returns
-    -------
-    adhesion, radius : float
-        What adhesion loss and work of the changing radius lack there for what contacts have pending.
-    """
+    """Note the changes of the energies at a state, and return what adhesion loss and radius work have pending there."""
     e, now = m.state.energy, m.work.energy_now
-    stored, pending = stored_energy(m, y)
-    lag = joining_lag(m)
+    (stored, pending), lag = stored_energy(m, y), joining_lag(m)
     now.stored_change = stored - pending - e.start_stored
     now.kinetic_change = kinetic_energy(m, y) - e.start_kinetic
     return pending - lag, -lag if m.scene.radius_force == 0 else 0.0
@@ -356,8 +349,7 @@ def look(m: Model, t: float, y: Floats) -> None:
     y : ndarray, shape (n,)
         State there.
     """
-    e, now = m.state.energy, m.work.energy_now
-    adhesion, radius = note_changes(m, y)
+    e, now, (adhesion, radius) = m.state.energy, m.work.energy_now, note_changes(m, y)
     e.adhesion_loss += adhesion
     e.radius_work += radius
     e.quadrature_error += e.loss_error
