@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from gearidae.compiled import compiles
 from gearidae.engine.changeover import change_over, deepen, lighten
+from gearidae.engine.collecting import Collector
 from gearidae.engine.continuing import checkpoint_of_start, knots_at_start, problem_from
 from gearidae.engine.drivers import formulas, load_driver, native_formulas, ready_driver
 from gearidae.engine.integrate.driver import Block, Ending
@@ -281,16 +282,16 @@ def solve(
     scene = scene.replace(changes) if changes else scene
     columns = columns_of(scene)
     rows = [np.empty((0, len(columns)))]
-    tables = {kind.field: [kind.no_table()] for kind in ROWS}
+    collectors = {kind.field: Collector(kind) for kind in ROWS}
 
     def take(block: Block, statistics: Statistics, wall_time: float) -> None:
         rows.append(block.rows)
-        for field, parts in tables.items():
-            parts.append(getattr(block, field))
+        for field, collector in collectors.items():
+            collector.add(getattr(block, field))
 
     ended = follow(scene, take, backend=backend, on_progress=on_progress, start=start, on_block=on_block)
     table = np.concatenate(rows)
-    left: dict[str, Any] = {kind.field: kind.of_table(np.concatenate(tables[kind.field])) for kind in ROWS}
+    left: dict[str, Any] = {field: collector.rows() for field, collector in collectors.items()}
     return Solution(
         time=sample_times(start.time, scene.run.duration, scene.run.sample_count)[: len(table)],
         samples={column: np.ascontiguousarray(table[:, i]) for i, column in enumerate(columns)},
