@@ -50,7 +50,7 @@ def archived(rows: Rows, teeth: int, fraction: float) -> dict[str, NDArray[Any]]
     """
     values = {name: getattr(rows, name) for name in rows.columns}
     values["tooth"] = np.where(rows.flank != Flank.NONE, rows.pair % teeth, -1)
-    values["sam_fraction"] = np.full(len(rows), fraction)
+    values["sam_fraction"] = np.broadcast_to(fraction, len(rows))
     return {f"{rows.dim}_{name}": each for name, each in values.items()}
 
 
@@ -89,7 +89,9 @@ def row_variables(
     made: dict[Hashable, Any] = {}
     for name, variable in ROW_VARIABLES[kind].items():
         if discrete or name not in POPULATION_EVENTS:
-            values = np.concatenate([part[name] for part in parts]).astype(variable.dtype, copy=False)
+            columns = [part[name] for part in parts]  # one alone may be longer than the memory
+            values = columns[0] if len(columns) == 1 else np.concatenate(columns)
+            values = values.astype(variable.dtype, copy=False)
             made[name] = ((kind.dim,), values, variable.attributes)
     labels = labels or {}
     counts = [len(getattr(solution, kind.field)) for solution in solutions]
