@@ -33,6 +33,13 @@ def operating_map(path, **more):
     return gd.studies.operating_map(LOW, over, archive=path, **more)
 
 
+def hub_life(path, **more):
+    joints = {"gears.pinion_hub_radius": 3e-6, "gears.gear_hub_radius": 6e-6, "run.duration": 0.1e-3}
+    wear = {"coefficient": 1e-16, "threshold": "2 sigma", "spread": 2.0, "seeds": 5, "clearance": True}
+    rubbing = gd.preset("teodorescu2009").replace(joints)
+    return gd.studies.hub_life(rubbing, **wear, turns=1, tolerance=0.1, archive=path, **more)
+
+
 def posterior(path, **more):
     seen = [gd.studies.Observation(value=False)]
     priors = {"drive.torque": "normal(4.5e-18, 2e-19)"}
@@ -62,6 +69,7 @@ STUDIES = {
     "ensemble": lambda path, **more: gd.studies.ensemble(
         LOW, DRAWN, 4, of="min_gear_speed", archive=path, **more
     ),
+    "hub_life": hub_life,
     "life": lambda path, **more: gd.studies.life(
         WORN, LAW, **WINDOWS, resolved="place", archive=path, **more
     ),

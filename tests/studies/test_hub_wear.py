@@ -20,7 +20,7 @@ from gearidae.studies.hub_wear import (
 )
 
 SURFACE = gd.preset("teodorescu2009").surface
-PIN = joint_area(1.25e-6, 2e-6)
+PIN = float(joint_area(1.25e-6, 2e-6))
 
 
 @pytest.mark.parametrize(
@@ -31,7 +31,10 @@ def test_tops_of_a_pin(radius, depth, volume):
     """A pin of 1.25 um, 2 um long: to the two or three digits that were given."""
     surface = SURFACE.model_copy(update={"asperity_radius": radius})
     assert tops_volume(surface, depth, PIN) == pytest.approx(volume, rel=0.02, abs=0)
-    assert read_threshold(f"{depth:g} sigma").of(surface, PIN) == tops_volume(surface, depth, PIN)
+    areas = joint_area([1.25e-6, 2.5e-6], 2e-6)
+    assert read_threshold(f"{depth:g} sigma").of(surface, areas) == pytest.approx(
+        [tops_volume(surface, depth, PIN), 2.0 * tops_volume(surface, depth, PIN)], rel=1e-12, abs=0
+    )
 
 
 @pytest.mark.parametrize("depth", [0.0, 0.7, 3.0, 6.0])

@@ -44,9 +44,12 @@ class Threshold:
     volume: float = math.nan
     depth: float = math.nan
 
-    def of(self, surface: Surface, area: float) -> float:
-        """Volume of a joint of some area [m^3]."""
-        return self.volume if math.isnan(self.depth) else tops_volume(surface, self.depth, area)
+    def of(self, surface: Surface, area: ArrayLike) -> Floats:
+        """Volumes of joints of some areas [m^3]."""
+        areas = np.asarray(area, dtype=np.float64)
+        if math.isnan(self.depth):
+            return np.full(areas.shape, self.volume)
+        return tops_volume(surface, self.depth, 1.0) * areas
 
 
 def read_threshold(value: float | str) -> Threshold:
@@ -91,9 +94,9 @@ def tops_volume(surface: Surface, depth: float, area: float) -> float:
     return surface.asperity_density * tip * share * area
 
 
-def joint_area(radius: float, length: float) -> float:
-    """Area of the surface of a journal [m^2], of its radius and length [m]."""
-    return 2.0 * math.pi * radius * length
+def joint_area(radius: ArrayLike, length: float) -> Floats:
+    """Area of the surface of journals [m^2], of their radii and length [m]."""
+    return np.asarray(2.0 * math.pi * length * np.asarray(radius, dtype=np.float64))
 
 
 def turns_to(volume: ArrayLike, coefficient: ArrayLike, sliding: ArrayLike) -> Floats:
@@ -133,7 +136,7 @@ def lognormal_quantile(median: ArrayLike, spread: float, share: ArrayLike) -> Fl
     ndarray
         ``median * spread^z`` with the normal quantile z.
     """
-    return np.asarray(median) * spread ** special.ndtri(np.asarray(share, dtype=np.float64))
+    return np.asarray(median * spread ** special.ndtri(np.asarray(share, dtype=np.float64)), dtype=np.float64)
 
 
 def drawn_factors(spread: float, seeds: int, joints: int) -> Floats:
