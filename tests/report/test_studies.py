@@ -162,7 +162,9 @@ def test_terminal_report_and_json_give_the_same_answer(product, tmp_path, capsys
 
 def test_a_gear_that_adhesion_does_not_hold_starts_at_once():
     ds = gd.studies.starting_torque(LOW, "own", impacts=1, tolerance=0.5)
-    assert answer(ds, "starting_torque").sentence.startswith("Adhesion does not hold a gear at rest")
+    assert answer(ds, "starting_torque").sentence.startswith(
+        "Adhesion of the teeth does not hold a gear at rest"
+    )
 
 
 def test_a_report_on_an_ensemble_says_first_what_was_asked(tmp_path):

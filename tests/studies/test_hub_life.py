@@ -120,7 +120,7 @@ def test_wrong_settings_are_named():
 
 def test_gears_that_do_not_turn_on_have_no_life_and_say_so(caplog):
     """An engine that is pulled out stands or goes back; beside one that turns it is named, alone it is an error."""
-    heavy = ENGINE.replace({"load.torque": 6e-10})
+    heavy = ENGINE.replace({"load.torque": 6e-10, "run.duration": 3e-3})
     with pytest.raises(gd.SolverError, match="no run gives a life"):
         gd.studies.hub_life(heavy, **WEAR)
     assert "does not turn on" in caplog.text

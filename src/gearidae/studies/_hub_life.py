@@ -147,16 +147,18 @@ def hub_life(
     base, how = prepared(scene, options, samples="off")
     wear = _wear(base, coefficient, threshold, (spread, seeds), length)
     measured = Turns(whole("turns", turns, 1, 10_000), _TOLERANCE.take("tolerance", tolerance))
-    given = None if frequencies is None else [_FREQUENCY.take("frequencies", each) for each in frequencies]
-    scenes = [base] if given is None else [at_frequency(base, each) for each in given]
+    requested = None
+    if frequencies is not None:
+        requested = [_FREQUENCY.take("frequencies", frequency) for frequency in frequencies]
+    scenes = [base] if requested is None else [at_frequency(base, frequency) for frequency in requested]
     if not scenes:
         raise SceneError("frequencies", "[]", "must be one number at least")
-    runs = [settling_scene(each, measured) for each in scenes]
+    runs = [settling_scene(steady, measured) for steady in scenes]
 
     def work(kept: KeptRuns | None) -> xr.Dataset:
         with how.side_by_side(kept, len(runs)) as compute:
             words = [word for _, word in compute(run_turns, runs, measured)]
-        return _dataset(base, wear, given, words, clearance=clearance)
+        return _dataset(base, wear, requested, words, clearance=clearance)
 
     threshold_text = threshold if isinstance(threshold, str) else repr(float(threshold))
     settings = {
@@ -164,7 +166,7 @@ def hub_life(
         "threshold": threshold_text,
         "spread": [wear.spread, len(wear.factors)],
         "clearance": bool(clearance),
-        "frequencies": given,
+        "frequencies": requested,
         "length": wear.length,
         "turns": [measured.count, measured.tolerance],
     }
@@ -215,7 +217,7 @@ def _wear(
 
 
 def _dataset(
-    scene: Scene, wear: _Wear, given: list[float] | None, words: list[str], *, clearance: bool
+    scene: Scene, wear: _Wear, requested: list[float] | None, words: list[str], *, clearance: bool
 ) -> xr.Dataset:
     failures = [word.removeprefix(FAILS) if word.startswith(FAILS) else "" for word in words]
     for failure in filter(None, failures):
@@ -229,17 +231,17 @@ def _dataset(
             advice="let the scene settle: a longer run.duration, schedules that end before it, a load that is carried",
         )
     none = Slid((math.nan,) * len(SUMS), math.nan, math.nan)
-    found = [none if failure else Slid.read(word) for failure, word in zip(failures, words, strict=True)]
+    slides = [none if failure else Slid.read(word) for failure, word in zip(failures, words, strict=True)]
     places = [list(SUMS).index(name) for name in wear.names]
-    sliding = np.array([each.sliding for each in found])[:, places]
-    rates = np.array([each.rate for each in found])
-    asked = np.array(rates if given is None else given)
+    sliding = np.array([slid.sliding for slid in slides])[:, places]
+    rates = np.array([slid.rate for slid in slides])
+    asked = np.array(rates if requested is None else requested)
     values = {
         "frequency": np.where(np.isnan(rates), asked, rates),
         "joint": np.array(wear.names),
         "sliding": sliding,
         "volume": wear.volumes,
-        "drift": np.array([each.drift for each in found]),
+        "drift": np.array([slid.drift for slid in slides]),
         "status": np.array(["failed" if failure else "finished" for failure in failures]),
         "message": np.array(failures),
         **_lives(wear, sliding, rates),
@@ -261,7 +263,7 @@ def _lives(wear: _Wear, sliding: Floats, rates: Floats) -> dict[str, Any]:
     """Lives of the joints and of the devices, from what joints slide at each frequency."""
     turns = turns_to(wear.volumes, wear.coefficient, sliding)
     drawn = turns_to(wear.volumes, wear.coefficient * wear.factors, sliding[:, None, :])
-    shares = np.array([first_shares(each) for each in drawn])
+    shares = np.array([first_shares(devices) for devices in drawn])
     lives = drawn.min(axis=2)
     quantiles = np.array(QUANTILES)
     return {

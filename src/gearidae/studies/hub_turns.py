@@ -104,10 +104,10 @@ def run_turns(scene: Scene, turns: Turns, backend: str) -> tuple[Solution, str]:
         study of several.
     """
     try:
-        found, word = _measured(scene, turns, backend)
+        solution, word = _measured(scene, turns, backend)
     except SolverError as error:
         return unsolved("failed", str(error)), f"{FAILS}{error}"
-    return replace(found, events=unsolved("", "").events, checkpoint=None), word
+    return replace(solution, events=unsolved("", "").events, checkpoint=None), word
 
 
 def _measured(scene: Scene, turns: Turns, backend: str) -> tuple[Solution, str]:
@@ -118,15 +118,15 @@ def _measured(scene: Scene, turns: Turns, backend: str) -> tuple[Solution, str]:
         assert before.checkpoint is not None
         start = engine.end_of(place, before.checkpoint, start.time)
         place = _block(scene, turns, rate)
-        found = _solved(place, backend, start)
-        slid, took, turned = _gained(found, before, start, place)
+        after = _solved(place, backend, start)
+        slid, took, turned = _gained(after, before, start, place)
         if turned < turns.count * (1.0 - 1e-6):
-            before = found
+            before = after
             break
         blocks.append(slid / turned)
-        before, rate, drift = found, turned / took, _drift(blocks)
+        before, rate, drift = after, turned / took, _drift(blocks)
         if drift <= turns.tolerance or len(blocks) == _MOST_BLOCKS:
-            return found, json.dumps({"sliding": blocks[-1].tolist(), "rate": rate, "drift": drift})
+            return after, json.dumps({"sliding": blocks[-1].tolist(), "rate": rate, "drift": drift})
     return before, f"{FAILS}the gear does not turn on at {before.reached:g} s in {scene.name}"
 
 
@@ -147,8 +147,8 @@ def _solved(scene: Scene, backend: str, start: engine.Start = engine.AT_ONCE) ->
 
 def _stands(solution: Solution) -> bool:
     """Whether the gear stands or has gone back at the end of a run."""
-    found = solution.extremes
-    return found is None or not (math.isnan(found.stick_time) and math.isnan(found.back_time))
+    extremes = solution.extremes
+    return extremes is None or not (math.isnan(extremes.stick_time) and math.isnan(extremes.back_time))
 
 
 def _block(scene: Scene, turns: Turns, rate: float) -> Scene:
@@ -159,17 +159,17 @@ def _block(scene: Scene, turns: Turns, rate: float) -> Scene:
 
 
 def _gained(
-    found: Solution, before: Solution, start: engine.Start, block: Scene
+    after: Solution, before: Solution, start: engine.Start, block: Scene
 ) -> tuple[Floats, float, float]:
     """What a block has slid [N m], the time it took [s], and turns of the pinion."""
     assert block.gears is not None
-    assert found.checkpoint is not None
+    assert after.checkpoint is not None
     assert start.place is not None
-    end = engine.end_of(block, found.checkpoint, start.time)
+    end = engine.end_of(block, after.checkpoint, start.time)
     assert end.place is not None
-    assert found.balance is not None
+    assert after.balance is not None
     assert before.balance is not None
-    slid = np.array([found.balance[name] - before.balance[name] for name in SUMS.values()])
+    slid = np.array([after.balance[name] - before.balance[name] for name in SUMS.values()])
     return slid, end.time - start.time, abs(end.place - start.place) / block.gears.pinion_teeth
 
 

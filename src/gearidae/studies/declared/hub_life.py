@@ -58,17 +58,17 @@ def _answered(ds: xr.Dataset) -> xr.Dataset:
 
 
 def _sentence(ds: xr.Dataset) -> str:
-    found = _answered(ds)
-    if not found.sizes["frequency"]:
+    answered = _answered(ds)
+    if not answered.sizes["frequency"]:
         return f"No run gives a life. {FITTED}"
-    lives, rates = found["life_quantile"].sel(quantile=0.5).values, found["frequency"].values
+    lives, rates = answered["life_quantile"].sel(quantile=0.5).values, answered["frequency"].values
     if not np.isfinite(lives).any():
         return f"No joint slides under a load: none wears. {FITTED}"
-    names = [_first(found.isel(frequency=number)) for number in range(rates.size)]
+    names = [_first(answered.isel(frequency=number)) for number in range(rates.size)]
     who = f"The {names[0]} fails first" if len(set(names)) == 1 else "The first joint to fail changes"
     median = ""
     if ds.attrs["spread"] > 1.0:
-        shares = [f"{share:.3g}" for share in 100.0 * found["first_share"].max("joint").values]
+        shares = [f"{share:.3g}" for share in 100.0 * answered["first_share"].max("joint").values]
         who += f" in {_range(shares)} % of the devices" if len(set(names)) == 1 else ""
         median = f" in the median of {ds.sizes['seed']} devices"
     turns = _range([f"{life:.3g}" for life in lives])
@@ -134,17 +134,17 @@ def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     """
     from gearidae.drawing.style import COLOURS, LINE_STYLES, new_axes, tidy
 
-    found = _answered(STUDY.require(ds)).sortby("frequency")
-    if not np.isfinite(found["turns"]).any():
+    answered = _answered(STUDY.require(ds)).sortby("frequency")
+    if not np.isfinite(answered["turns"]).any():
         raise SceneError("plot", "hub_life", "no joint wears")
     ax = new_axes(ax, height=3.4)
-    for number, name in enumerate(found["joint"].values.tolist()):
-        joint = found.isel(joint=number)
+    for number, name in enumerate(answered["joint"].values.tolist()):
+        joint = answered.isel(joint=number)
         if not np.isfinite(joint["turns"]).any():
             continue
         style = {"color": COLOURS[number], "linestyle": LINE_STYLES[number], "label": name}
         ax.plot(joint["frequency"], joint["turns"], marker="o", markersize=3.5, **style)
-        if found.attrs["spread"] > 1.0:
+        if answered.attrs["spread"] > 1.0:
             low, _, high = joint["turns_quantile"].values.T
             ax.fill_between(joint["frequency"], low, high, color=COLOURS[number], alpha=0.15, linewidth=0.0)
     ax.set_yscale("log")

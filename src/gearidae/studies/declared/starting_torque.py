@@ -70,7 +70,8 @@ def _sentence(ds: xr.Dataset) -> str:
         return f"A gear at rest starts at {low} to {high} on the pinion, by its coating."
     torque, drive = float(_simulated(ds)[0]), float(ds.attrs.get("drive_torque", math.nan))
     if torque == float(ds["simulated_stuck"][0]):
-        return f"Adhesion does not hold a gear at rest: it starts at {with_prefix(torque, 'N m', 4)} on the pinion."
+        starts = f"it starts at {with_prefix(torque, 'N m', 4)} on the pinion"
+        return f"Adhesion of the teeth does not hold a gear at rest: {starts}."
     starts = f"A gear at rest starts at {with_prefix(torque, 'N m', 4)} on the pinion"
     if not drive > 0.0:
         return f"{starts}."
