@@ -27,7 +27,7 @@ LIGHT = {
     "signal": "gd.analysis.read_signal(sys.argv[1])",
     "words": "from gearidae.analysis.verdict import outcomes; outcomes(ds)",
     "account": "from gearidae.archive.run_summary import account; account(ds)",
-    "validity": "from gearidae.runs.kept_validity import validity_of; assert len(validity_of(ds)) == 15",
+    "validity": "from gearidae.runs.kept_validity import validity_of; assert len(validity_of(ds)) == 16",
     "accessor": "ds.gearidae.scene; ds.gearidae.verdicts(); ds.gearidae.to_dataframe(); ds.gearidae.events()",
     "chain": "gd.concat([ds.isel(event=slice(0))], 'time')",
     "checkpoints": "from gearidae.archive import GrowingArchive",

@@ -33,6 +33,13 @@ def operating_map(path, **more):
     return gd.studies.operating_map(LOW, over, archive=path, **more)
 
 
+def hub_life(path, **more):
+    joints = {"gears.pinion_hub_radius": 3e-6, "gears.gear_hub_radius": 6e-6, "run.duration": 0.1e-3}
+    wear = {"coefficient": 1e-16, "threshold": "2 sigma", "spread": 2.0, "seeds": 5, "clearance": True}
+    rubbing = gd.preset("teodorescu2009").replace(joints)
+    return gd.studies.hub_life(rubbing, **wear, turns=1, tolerance=0.1, archive=path, **more)
+
+
 def posterior(path, **more):
     seen = [gd.studies.Observation(value=False)]
     priors = {"drive.torque": "normal(4.5e-18, 2e-19)"}
@@ -62,6 +69,7 @@ STUDIES = {
     "ensemble": lambda path, **more: gd.studies.ensemble(
         LOW, DRAWN, 4, of="min_gear_speed", archive=path, **more
     ),
+    "hub_life": hub_life,
     "life": lambda path, **more: gd.studies.life(
         WORN, LAW, **WINDOWS, resolved="place", archive=path, **more
     ),
@@ -154,7 +162,9 @@ def test_terminal_report_and_json_give_the_same_answer(product, tmp_path, capsys
 
 def test_a_gear_that_adhesion_does_not_hold_starts_at_once():
     ds = gd.studies.starting_torque(LOW, "own", impacts=1, tolerance=0.5)
-    assert answer(ds, "starting_torque").sentence.startswith("Adhesion does not hold a gear at rest")
+    assert answer(ds, "starting_torque").sentence.startswith(
+        "Adhesion of the teeth does not hold a gear at rest"
+    )
 
 
 def test_a_report_on_an_ensemble_says_first_what_was_asked(tmp_path):

@@ -24,6 +24,7 @@ from gearidae.archive import growing
 from gearidae.cli import main
 from gearidae.engine.integrate import driver, native, portable
 from gearidae.runs import streaming
+from gearidae.runs.kept_validity import largest_force
 from gearidae.runs.validity import validity_attribute
 
 LOW = gd.preset("teodorescu2009_low_speed").replace(
@@ -55,7 +56,7 @@ def many_small_blocks(monkeypatch):
 def assert_same(one, other):
     """Two archives, or an archive and what was computed in memory, which has no attribute ``validity``."""
     one, other = one.copy(), other.copy()
-    limits = validity_attribute(gd.Scene.from_dict(json.loads(one.attrs["scene"])))
+    limits = validity_attribute(gd.Scene.from_dict(json.loads(one.attrs["scene"])), largest_force(one))
     for ds in (one, other):
         assert ds.attrs.pop("validity", limits) == limits
     for name in MOMENTARY:

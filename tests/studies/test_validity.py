@@ -38,6 +38,7 @@ ROWS = [
         "disc_drag",
         "inertia_pinion",
         "inertia_gear",
+        "yielding",
     ),
 ]
 
@@ -224,6 +225,18 @@ def test_neither_numba_nor_the_engine_is_needed():
         [sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=120
     )
     assert done.stdout.strip() == "[]"
+
+
+def test_the_fast_roller_yields_and_gears_at_rest_do_not():
+    """Less than one asperity is expected to carry a gear at rest: it carries all of the force."""
+    fast, high = gd.studies.validity(gd.preset("roller_fast")), gd.studies.validity(HIGH)
+    assert not fast.holds["yielding"]
+    assert "yields at the closest approach" in fast.verdict["yielding"]
+    assert high.holds["yielding"]
+    assert high.number["yielding"] == pytest.approx(2.43e-11 / 34.715e-6 / 46.7e-6, rel=1e-3)
+    sharp = gd.studies.validity(HIGH.replace({"surface.asperity_radius": 160e-9}))
+    assert "5.9 uN" in sharp.limit["yielding"]
+    assert math.isnan(number(LOW.replace({"drive.torque": 0.0}), "yielding"))
 
 
 def test_friction_near_locking():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import json
+import math
 from typing import TYPE_CHECKING
 
 from gearidae.archive.select import run_scene, scene_of, swept_dims
@@ -26,12 +26,21 @@ def with_validity(ds: xr.Dataset, scene: Scene) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        The same object, with the attribute ``validity``.
+        The same object, with the attribute ``validity``; that of a run has the yielding of asperities at its largest
+        force.
     """
     from gearidae.runs.validity import validity_attribute  # loads the contact laws
 
-    ds.attrs[ATTRIBUTE] = validity_attribute(scene)
+    ds.attrs[ATTRIBUTE] = validity_attribute(scene, largest_force(ds))
     return ds
+
+
+def largest_force(ds: xr.Dataset) -> float:
+    """Largest force of a run in either direction [N], as its solver kept it; NaN of a sweep, and before a run."""
+    if swept_dims(ds):
+        return math.nan
+    forces = [abs(float(ds[name])) for name in ("largest_mesh_force", "smallest_mesh_force") if name in ds]
+    return max(forces, default=math.nan)
 
 
 def validity_of(ds: xr.Dataset) -> list[ValidityRow]:
@@ -48,10 +57,11 @@ def validity_of(ds: xr.Dataset) -> list[ValidityRow]:
     SceneError
         If the dataset carries no scene.
     """
-    scene = Scene.from_dict(scene_of(ds)) if swept_dims(ds) else run_scene(ds)
-    of_base = scene.to_dict() == json.loads(ds.attrs.get("scene", "{}"))
-    if of_base and (rows := rows_from_json(ds.attrs.get(ATTRIBUTE))):
+    swept = swept_dims(ds)
+    scene = Scene.from_dict(scene_of(ds)) if swept else run_scene(ds)
+    picked = "swept" in ds.attrs and not swept
+    if not picked and (rows := rows_from_json(ds.attrs.get(ATTRIBUTE))):
         return rows
     from gearidae.runs.validity import validity_rows
 
-    return validity_rows(scene)
+    return validity_rows(scene, largest_force(ds))

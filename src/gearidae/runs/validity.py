@@ -32,6 +32,7 @@ from gearidae.contact.surroundings import (
 from gearidae.mesh.pair_contact import PairContact
 from gearidae.runs.estimates import Rest, balanced_speed, mean_drive_torque, rest_of
 from gearidae.runs.locking import locking_rows
+from gearidae.runs.yielding import yielding_row
 from gearidae.scene.gears import disc_inertia
 from gearidae.scene.prefixes import with_prefix
 from gearidae.scene.validity_row import EXPECTED_ASPERITIES, ValidityRow, rows_to_json
@@ -88,20 +89,31 @@ def validity(scene: Scene) -> pd.DataFrame:
     return pd.DataFrame(table, index=pd.Index([row.name for row in rows], name="name"), columns=columns)
 
 
-def validity_attribute(scene: Scene) -> str:
+def validity_attribute(scene: Scene, force: float = math.nan) -> str:
     """Return the rows of `validity` as JSON, for the attributes of an archive.
+
+    Parameters
+    ----------
+    force : float, optional
+        As for `validity_rows`.
 
     Returns
     -------
     str
         A list of objects with the fields of `ValidityRow`; `gearidae.scene.validity_row.rows_from_json` reads it.
     """
-    return rows_to_json(_rows(scene))
+    return rows_to_json(validity_rows(scene, force))
 
 
-def validity_rows(scene: Scene) -> list[ValidityRow]:
-    """Return the rows of `validity` as plain records."""
-    return list(_rows(scene))
+def validity_rows(scene: Scene, force: float = math.nan) -> list[ValidityRow]:
+    """Return the rows of `validity` as plain records.
+
+    Parameters
+    ----------
+    force : float, optional
+        Largest force of a run [N], at which asperities are compared with those that yield; by default that at rest.
+    """
+    return [*_rows(scene), yielding_row(scene, force)]
 
 
 # Some 15 ms: an archive needs them at its beginning and at its end.

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from gearidae.runs.plausibility import doubts as doubts
     from gearidae.runs.run_time import run_time as run_time
     from gearidae.runs.validity import validity as validity
+    from gearidae.studies._hub_life import hub_life as hub_life
     from gearidae.studies._life import life as life
     from gearidae.studies._lives import lives as lives
     from gearidae.studies._sensitivity import sensitivity as sensitivity

@@ -19,6 +19,7 @@ from gearidae.runs.execution import Execution, SideBySide
 from gearidae.runs.kept_runs import KeptRuns
 from gearidae.scene.quantity import whole
 from gearidae.studies.declared.starting_torque import GEARS, SEEDS, SLOW_ENOUGH
+from gearidae.studies.starting_parts import PARTS, parts_of
 from gearidae.studies.starting_ramp import (
     FAILS,
     RESTS,
@@ -74,6 +75,8 @@ class _Design:
         Relative change of their median by the last halving.
     starts : ndarray, shape (seeds,)
         Whether the gear starts at the drive's own torque, 0 or 1; NaN if the drive has none.
+    messages : list of str
+        Of the runs of `torques` that have failed; empty texts of the others.
     """
 
     scene: Scene
@@ -83,14 +86,15 @@ class _Design:
     torques: Floats = field(default_factory=lambda: np.empty(0))
     change: float = math.nan
     starts: Floats = field(default_factory=lambda: np.empty(0))
+    messages: list[str] = field(default_factory=list)
 
     @property
     def is_settled(self) -> bool:
         """Whether the rate is slow enough, or has been halved as often as is allowed."""
         return self.change < SLOW_ENOUGH or self.halvings == _HALVINGS
 
-    def learn(self, torques: Floats) -> None:
-        """Take in the starting torques at the next rate."""
+    def learn(self, torques: Floats, messages: Sequence[str]) -> None:
+        """Take in the starting torques at the next rate, and what is said of runs that have failed."""
         if self.torques.size:
             self.halvings += 1
             before, now = (_quantiles(each)[1] - pitch_of(self.scene).dry for each in (self.torques, torques))
@@ -98,24 +102,25 @@ class _Design:
             self.change = (
                 0.0 if before == now else abs(now / before - 1.0) if math.isfinite(before) else math.inf
             )
-        self.torques = torques
+        self.torques, self.messages = torques, list(messages)
 
 
 @dataclass
 class _Runs:
-    """Runs side by side, and the messages of those that have failed."""
+    """Runs side by side, and the messages of the latest, empty texts of those that have not failed."""
 
     compute: SideBySide
-    failures: list[str] = field(default_factory=list)
+    messages: list[str] = field(default_factory=list)
 
     def torques(self, scenes: Sequence[Scene]) -> Floats:
         """Torques of runs from rest [N m]; infinite where the gear has not turned, NaN where its run has failed."""
         found = []
+        self.messages = []
         for _, word in self.compute(run_from_rest, scenes):
             failed = word.startswith(FAILS)
+            self.messages.append(word.removeprefix(FAILS) if failed else "")
             if failed:
-                self.failures.append(word.removeprefix(FAILS))
-                log.warning("one gear is left out: %s", self.failures[-1])
+                log.warning("one gear is left out: %s", self.messages[-1])
             found.append(math.nan if failed else math.inf if word == RESTS else float(word))
         return np.array(found)
 
@@ -160,7 +165,7 @@ def _find_all(designs: Sequence[_Design], runs: _Runs) -> None:
         dry = pitch_of(one.scene).dry
         started = torques[np.isfinite(torques)] - dry
         if np.isnan(torques).all():
-            raise nothing_followed("gear", runs.failures[-1])
+            raise nothing_followed("gear", next(filter(None, reversed(runs.messages))))
         if not started.size:
             raise SceneError("scene", one.scene.name, "has no gear that any torque starts")
         one.scale = float(np.median(started))
@@ -168,8 +173,9 @@ def _find_all(designs: Sequence[_Design], runs: _Runs) -> None:
     while waiting:
         halvings = [one.halvings + (one.torques.size > 0) for one in waiting]
         slow = [ramp(at, one.scale, n) for one, n in zip(waiting, halvings, strict=True) for at in one.laid]
-        for one, torques in _in_parts(waiting, runs.torques(slow)):
-            one.learn(torques)
+        for number, (one, torques) in enumerate(_in_parts(waiting, runs.torques(slow))):
+            own = slice(number * len(one.laid), (number + 1) * len(one.laid))
+            one.learn(torques, runs.messages[own])
         waiting = [one for one in waiting if not one.is_settled]
     for one in designs:
         assert one.scene.drive is not None
@@ -204,6 +210,7 @@ def _dataset(
     assert base.drive is not None
     places = [place_of_seed(base, number) for number in numbers]
     axes = {"place": np.array(places), "seed": np.array(numbers), "quantile": np.array(QUANTILES)}
+    axes["part"] = np.array(PARTS)
     values = {name: np.asarray(column) for name, column in _columns(designs).items()}
     attributes = {
         **provenance(base, "found starting torques of a population", swept=("contact.seed",)),
@@ -226,7 +233,9 @@ def _columns(designs: Sequence[_Design]) -> dict[str, Any]:
         "starting_torque": finite,
         "starts": starts,
         "quantiles": np.where(np.isfinite(quantiles), quantiles, np.nan),
+        "parts": [parts_of(one.scene, row) for one, row in zip(designs, finite, strict=True)],
         "failed": np.isnan(torques),
+        "message": [one.messages for one in designs],
         "not_started": np.isinf(torques).sum(axis=1) / (~np.isnan(torques)).sum(axis=1),
         "chance": [_mean(each[~np.isnan(each)]) for each in starts],
         "rate": [

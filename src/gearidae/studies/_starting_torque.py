@@ -16,11 +16,8 @@ from scipy.optimize import brentq
 from gearidae.archive.provenance import provenance
 from gearidae.archive.variables import SAM_FRACTION
 from gearidae.errors import SceneError
-from gearidae.mesh.friction import hub_starting_torque, starting_ratio
-from gearidae.runs.estimates import mean_force
 from gearidae.runs.execution import Execution, RunOptions, prepared
 from gearidae.runs.kept_runs import KeptRuns
-from gearidae.runs.rubbing import flank_coefficient, hub_constants, hub_radii
 from gearidae.runs.running import solve_to_end, unfinished, unsolved
 from gearidae.scene.carried import numbers_of
 from gearidae.scene.quantity import whole
@@ -29,6 +26,7 @@ from gearidae.studies.bracket import STRIDE, bracket, next_value
 from gearidae.studies.declared.starting_torque import STUDY
 from gearidae.studies.release import holding_forces
 from gearidae.studies.requirements import require_constant, require_gears
+from gearidae.studies.starting_parts import PARTS, Starting, parts_of
 from gearidae.studies.starting_ramp import FAILS, nothing_followed, pitch_of
 
 if TYPE_CHECKING:
@@ -55,17 +53,17 @@ def static_starting_torque(scene: Scene, *, impacts: int = 3, lowest: float | No
         Mesh exits that have to be passed. A worn contact is pressed deeper by each one, and needs more torque the
         more there are.
     lowest : float, optional
-        Torque below which nothing is looked for, beyond what the dry resistance takes [N m]; by default a thousandth
-        of the scene's.
+        Torque below which nothing is looked for, beyond what dry resistance and joints take [N m]; by default a
+        thousandth of the scene's.
 
     Returns
     -------
     float
         Torque on the pinion [N m]: the M10 at which ``M10/R1 = max(-s' W_l) + M20/R2`` holds at the worst exit, see
-        `gearidae.studies.release`; with friction, ``M10 = i (R2 max(-s' W_l) + M20)`` with the ratio i of
-        `gearidae.mesh.friction.starting_ratio`, friction of the flanks being that under the scene's own torque. What
-        the dry resistance takes (0 without one) if adhesion does not hold the gear even at the lowest torque; infinite
-        if it does at any.
+        `gearidae.studies.release`; with friction, ``M10 = i (R2 max(-s' W_l) + M20 + m2) + m1`` of
+        `gearidae.studies.starting_parts`, friction of the flanks being that under the scene's own torque. What
+        the dry resistance and the joints take (0 without any) if adhesion does not hold the gear even at the lowest
+        torque; infinite if it does at any.
 
     Raises
     ------
@@ -73,12 +71,12 @@ def static_starting_torque(scene: Scene, *, impacts: int = 3, lowest: float | No
         If the scene has no gears, or a setting is not allowed.
     """
     _require(scene, impacts)
-    assert scene.load is not None
-    lowest, ratio, geometry = _lowest(scene, lowest), _ratio(scene), scene.geometry
-    dry, lever = scene.load.torque * ratio, geometry.base_radius_gear * ratio
+    lowest, whole, geometry = _lowest(scene, lowest), Starting(scene), scene.geometry
+    dry, lever = whole.torque(), geometry.base_radius_gear * whole.ratio
+    carried = dry - whole.joint_torques[0]  # by the teeth
 
     def surplus(logarithm: float) -> float:
-        force = (dry + math.exp(logarithm)) / geometry.base_radius_pinion
+        force = (carried + math.exp(logarithm)) / geometry.base_radius_pinion
         return math.exp(logarithm) - max(holding_forces(scene, force, impacts)) * lever
 
     tried: dict[float, bool] = {}
@@ -133,16 +131,18 @@ def starting_torque(
     Dataset, dims (sam_fraction)
         ``static_torque``: without inertia, see `static_starting_torque`. ``simulated_torque``: a run from rest turns
         the gear by `impacts` pitches at this torque and not at ``simulated_stuck``, which is smaller by `tolerance` or
-        less. Both are what the dry resistance takes where adhesion does not hold even at the lowest torque, and NaN
-        without `simulated`. All in N m on the pinion. The scene's own constant torque is the attribute
-        ``drive_torque``.
+        less. Both are what dry resistance and joints take where adhesion does not hold even at the lowest torque, and
+        NaN without `simulated`. ``parts`` divides the static torque along ``part``: dry resistance, adhesion of teeth,
+        friction of flanks, hubs, pin, axial loads. All in N m on the pinion. The scene's own constant torque is the
+        attribute ``drive_torque``; ``message`` names the run that failed.
 
         Of a population, dims (sam_fraction, seed): ``starting_torque``, at the last moment of rest before the gear has
-        turned one pitch, while the torque rises linearly; ``starts``, whether the drive's own constant torque, there at
-        once, turns it so far. Along ``sam_fraction`` ``quantiles`` (10, 50 and 90 %), ``not_started`` (the share that
-        rests when the ramp ends at ``ramp_end``), ``chance`` (mean of ``starts``), the ``rate`` [N m/s] and
-        ``median_change``, by which half of a rate has changed the median; the rate is halved until that is less than a
-        tenth. ``damping`` is the scene's, or 3 % of the critical damping of an asperity without load.
+        turned one pitch, while the torque rises linearly; its ``parts`` along ``part``; ``starts``, whether the drive's
+        own constant torque, there at once, turns it so far; ``message`` of a run that failed. Along ``sam_fraction``
+        ``quantiles`` (10, 50 and 90 %), ``not_started`` (the share that rests when the ramp ends at ``ramp_end``),
+        ``chance`` (mean of ``starts``), the ``rate`` [N m/s] and ``median_change``, by which half of a rate has changed
+        the median; the rate is halved until that is less than a tenth. ``damping`` is the scene's, or 3 % of the
+        critical damping of an asperity without load.
 
     Raises
     ------
@@ -182,8 +182,9 @@ def starting_torque(
         ]
         if simulated:
             _search_all(searches, tolerance, how, kept)
-        found = [each.result if simulated else (math.nan, math.nan) for each in searches]
-        return _dataset(scene, fractions, static, found).assign_attrs(impacts=impacts, tolerance=tolerance)
+        return _dataset(scene, fractions, searches, simulated=simulated).assign_attrs(
+            impacts=impacts, tolerance=tolerance
+        )
 
     return STUDY.compute(how, base, work, [fractions, impacts, least, simulated, tolerance], origin=scene)
 
@@ -209,11 +210,19 @@ def _coatings(base: Scene, given: ArrayLike | None) -> tuple[list[float], list[S
 
 
 def _dataset(
-    scene: Scene, fractions: Sequence[float], static: Sequence[float], found: Sequence[tuple[float, float]]
+    scene: Scene, fractions: Sequence[float], searches: Sequence[_Search], *, simulated: bool
 ) -> xr.Dataset:
     assert scene.drive is not None
+    found = [each.result if simulated else (math.nan, math.nan) for each in searches]
     turns, sticks = map(np.array, zip(*found, strict=True))
-    values = {"static_torque": np.array(static), "simulated_torque": turns, "simulated_stuck": sticks}
+    values = {
+        "static_torque": np.array([each.static for each in searches]),
+        "simulated_torque": turns,
+        "simulated_stuck": sticks,
+        "part": np.array(PARTS),
+        "parts": np.array([parts_of(each.scene, each.static) for each in searches]),
+        "message": np.array([each.failure for each in searches]),
+    }
     attributes = {
         **provenance(scene, "searched the starting torque", swept=("coating.sam_fraction",)),
         "title": f"{scene.name}: starting torque",
@@ -320,20 +329,8 @@ def _run_from_rest(scene: Scene, way: float, backend: str) -> tuple[Solution, st
 
 
 def _dry(scene: Scene) -> float:
-    """Drive torque that the dry resistance takes [N m] with the hubs, without friction of the flanks."""
-    assert scene.load is not None
-    assert scene.gears is not None
-    gears, radii = scene.gears, hub_radii(scene)
-    constants = hub_constants(scene)
-    return hub_starting_torque(scene.geometry, scene.load.torque, gears.hub_friction, radii, constants)
-
-
-def _ratio(scene: Scene) -> float:
-    """Torque of the pinion over the resistance of the gear that it overcomes: R1/R2, and more with friction."""
-    assert scene.gears is not None
-    coefficient = flank_coefficient(scene, mean_force(scene))
-    coefficient = 0.0 if math.isnan(coefficient) else coefficient
-    return starting_ratio(scene.geometry, coefficient, scene.gears.hub_friction, hub_radii(scene))
+    """Drive torque that dry resistance and joints take [N m], without friction of the flanks."""
+    return pitch_of(scene).dry
 
 
 def _lowest(scene: Scene, given: float | None) -> float:

@@ -19,6 +19,7 @@ from gearidae.mesh.pair_contact import asperity_stiffness
 from gearidae.populations.first_touch import first_touch
 from gearidae.runs.estimates import effective_mass
 from gearidae.runs.running import solve_to_end, unfinished, unsolved
+from gearidae.studies.starting_parts import WITHOUT_FLANKS, Starting
 
 if TYPE_CHECKING:
     from gearidae.records import Solution
@@ -69,7 +70,7 @@ class Pitch(NamedTuple):
     ratio : float
         R2 over R1.
     dry : float
-        Torque on the pinion that the dry resistance takes [N m].
+        Torque on the pinion that dry resistance and joints take without friction of the flanks [N m].
     """
 
     angle: float
@@ -84,12 +85,11 @@ class Pitch(NamedTuple):
 
 def pitch_of(scene: Scene) -> Pitch:
     """Return the pitch of a scene with gears."""
-    gears, load, geometry = scene.gears, scene.load, scene.geometry
+    gears, geometry = scene.gears, scene.geometry
     assert gears is not None
-    assert load is not None
     ratio = geometry.base_radius_gear / geometry.base_radius_pinion
     inertia = gears.gear_inertia + gears.pinion_inertia * ratio**2
-    return Pitch(2.0 * math.pi / gears.gear_teeth, inertia, ratio, load.torque / ratio)
+    return Pitch(2.0 * math.pi / gears.gear_teeth, inertia, ratio, Starting(scene, WITHOUT_FLANKS).torque())
 
 
 def least_damping(scene: Scene) -> float:

@@ -79,6 +79,8 @@ class GearOutcome(Shown):
         Whether the verdict is that of an archive of version 0.2 by the rule of that version.
     chained : bool
         Whether the run goes on from another: times, exits and extremes are those of the chain.
+    reached : float
+        Time since the start of the chain to which the run has been followed [s]; NaN if unknown.
     """
 
     label: dict[str, Any]
@@ -98,6 +100,7 @@ class GearOutcome(Shown):
     scheduled: bool = False
     old: bool = False
     chained: bool = False
+    reached: float = math.nan
 
     def resolved_min_speed(self, rtol: float) -> float:
         """Smallest speed [rad/s]; 0 where that is less than a relative tolerance resolves beside the largest."""
@@ -116,7 +119,8 @@ class GearOutcome(Shown):
     def _verdict_in_words(self) -> str:
         exits = "1 mesh exit" if self.mesh_exits == 1 else f"{self.mesh_exits} mesh exits"
         if self.verdict == "unfinished":
-            return f"not followed to its end ({self.status})"
+            reached = "" if math.isnan(self.reached) else f" after {_seconds(self.reached)}"
+            return f"not followed to its end ({self.status}{reached})"
         if self.verdict in ("sticks", "stops"):
             return self._standing_in_words(exits)
         if self.verdict == "turns back":
@@ -259,6 +263,7 @@ def _gear(label: dict[str, Any], run: xr.Dataset) -> GearOutcome:
         scheduled=scheduled,
         old=old,
         chained="start_time" in run.attrs,
+        reached=kept.followed_time,
     )
 
 
@@ -314,6 +319,7 @@ def _kept(ds: xr.Dataset) -> list[GearOutcome | RollerOutcome]:
             numbers |= {"stick_time": stood, "mesh_exits": row["stick_exits"]}
             numbers |= {name: row[name] for name in ("free_advance", "turned_back")}
             numbers |= {"holding": Holding(row["holding"]), "scheduled": scheduled}
+            numbers["reached"] = row["followed_time"]
             numbers["old"] = scheduled and "followed_time" not in columns
             found.append(GearOutcome(**both, **numbers, window=float(windows[number])))
     return found

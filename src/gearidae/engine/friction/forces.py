@@ -100,24 +100,40 @@ class Shafts(NamedTuple):
     corner: float
 
 
-@compiled(inline=True)
-def solve_shafts(m: Model, t: float, y: Floats, turn: float, pinion: float, gear: float) -> Shafts:
-    """Accelerations with the present directions of slip.
+class _Pairs(NamedTuple):
+    """Sums over all pairs, and the pair that is held.
 
-    Parameters
+    Attributes
     ----------
-    t : float
-        Time over tau; the forces of the pairs have been noted there, with their limits.
-    y : ndarray, shape (n,)
-        State.
-    turn : float
-        Surface velocity of the pinion.
     pinion, gear : float
-        Forces at the base circles without friction and dry resistance.
+        Forces at the base circles, less the friction of the pairs that slip.
+    mesh : Mesh
+    first, second : float
+        Levers of the pair that is held; zero if none is.
+    limit : float
+        Of its friction, with the error of the force of the pair.
+    bend : float
+        Rate of its sliding speed with shafts that keep their speeds, and what errors have brought about of it.
+    on_coast : bool
+        Whether it is of the coast flank.
     """
-    own, state, w = m.scene.friction, m.state, y[W]
+
+    pinion: float
+    gear: float
+    mesh: Mesh
+    first: float
+    second: float
+    limit: float
+    bend: float
+    on_coast: bool
+
+
+@compiled(inline=True)
+def _sum_pairs(m: Model, turn: float, w: float, pinion: float, gear: float) -> _Pairs:
+    """Sum the forces of all noted pairs, and take their friction from the forces at the base circles."""
+    own, state = m.scene.friction, m.state
     drive = coast = drive_friction = coast_friction = 0.0
-    pinion_lever = gear_lever = limit = bend = 0.0
+    held_first = held_second = limit = bend = 0.0
     coast_held = False
     for i in range(m.work.notes.count):
         noted = m.work.notes.pair[i]
@@ -137,11 +153,31 @@ def solve_shafts(m: Model, t: float, y: Floats, turn: float, pinion: float, gear
         else:
             drive_friction += friction
         if state.hold == HELD_PAIR and noted.history == state.held_pair:
-            pinion_lever, gear_lever, coast_held = first, second, on_coast
+            held_first, held_second, coast_held = first, second, on_coast
             limit = noted.limit + own.blur * abs(noted.slope)
             bend = lever_rate(m, noted, turn, w) + RETURN * (first * turn - second * w)
     mesh = Mesh(drive, coast, drive_friction, coast_friction)
-    loads, pin, corner = Loads(0.0, 0.0), (0.0, 0.0), math.inf
+    return _Pairs(pinion, gear, mesh, held_first, held_second, limit, bend, coast_held)
+
+
+@compiled(inline=True)
+def solve_shafts(m: Model, t: float, y: Floats, turn: float, pinion: float, gear: float) -> Shafts:
+    """Accelerations with the present directions of slip.
+
+    Parameters
+    ----------
+    t : float
+        Time over tau; the forces of the pairs have been noted there, with their limits.
+    y : ndarray, shape (n,)
+        State.
+    turn : float
+        Surface velocity of the pinion.
+    pinion, gear : float
+        Forces at the base circles without friction and dry resistance.
+    """
+    own, state = m.scene.friction, m.state
+    pairs = _sum_pairs(m, turn, y[W], pinion, gear)
+    mesh, loads, pin, corner = pairs.mesh, Loads(0.0, 0.0), (0.0, 0.0), math.inf
     if own.joints != 0:
         pin = pin_force(m, t, y, turn)
         loads, along = turning_loads(m, mesh, pin)
@@ -150,40 +186,62 @@ def solve_shafts(m: Model, t: float, y: Floats, turn: float, pinion: float, gear
     if state.hold == AT_REST:
         return Shafts(0.0, 0.0, 0.0, 0.0, mesh, loads, pin, corner)
     a1, a2, dry = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass, gear_limit(m, t, y)
-    on_pinion = pinion - state.pinion_slip * pinion_limit(m, pin)
-    on_gear = gear - _gear_slip(m) * dry
+    on_pinion = pairs.pinion - state.pinion_slip * pinion_limit(m, pin)
+    on_gear = pairs.gear - _gear_slip(m) * dry
     hub_on_pinion, hub_on_gear = state.pinion_slip * own.pinion_hub, _gear_slip(m) * own.gear_hub
     held, margin = 0.0, math.inf
     if state.hold == HELD_PAIR:
-        inertia = max(a1 * pinion_lever**2 + a2 * gear_lever**2, 1e-300)
-        held = (a1 * pinion_lever * on_pinion - a2 * gear_lever * on_gear + bend) / inertia
+        first, second = a1 * pairs.first, a2 * pairs.second
+        inertia = max(first * pairs.first + second * pairs.second, 1e-300)
+        held = (first * on_pinion - second * on_gear + pairs.bend) / inertia
         if own.joints != 0:
-            by_pinion, by_gear = (
-                a1 * pinion_lever * hub_on_pinion / inertia,
-                a2 * gear_lever * hub_on_gear / inertia,
-            )
-            x, z = across(m, coast_held)
-            along, over = vector_sum(m, mesh)
-            u = (along + held * x, over + held * z)
-            solved = consistent_loads(u, (-by_pinion * x, -by_pinion * z), (by_gear * x, by_gear * z), pin)
-            loads, margin = solved.near, solved.room
-            held -= by_pinion * loads.pinion - by_gear * loads.gear
-            if coast_held:
-                mesh = Mesh(drive, coast, drive_friction, coast_friction + held)
-            else:
-                mesh = Mesh(drive, coast, drive_friction + held, coast_friction)
-        margin = min(margin, limit - abs(held))
-        on_pinion -= held * pinion_lever
-        on_gear += held * gear_lever
+            by_loads = first * hub_on_pinion / inertia, -second * hub_on_gear / inertia
+            mesh, loads, held, margin = _with_held(m, pairs, held, by_loads, pin)
+        margin = min(margin, pairs.limit - abs(held))
+        on_pinion -= held * pairs.first
+        on_gear += held * pairs.second
     on_pinion -= hub_on_pinion * loads.pinion
     on_gear -= hub_on_gear * loads.gear
     if state.hold == HELD_GEAR:
-        margin = dry + own.gear_hub * loads.gear - abs(gear)
-        return Shafts(a1 * on_pinion, 0.0, gear, margin, mesh, loads, pin, corner)
+        margin = dry + own.gear_hub * loads.gear - abs(pairs.gear)
+        return Shafts(a1 * on_pinion, 0.0, pairs.gear, margin, mesh, loads, pin, corner)
     if state.hold == HELD_PINION:
-        margin = pinion_limit(m, pin) + own.pinion_hub * loads.pinion - abs(pinion)
-        return Shafts(0.0, a2 * on_gear, pinion, margin, mesh, loads, pin, corner)
+        margin = pinion_limit(m, pin) + own.pinion_hub * loads.pinion - abs(pairs.pinion)
+        return Shafts(0.0, a2 * on_gear, pairs.pinion, margin, mesh, loads, pin, corner)
     return Shafts(a1 * on_pinion, a2 * on_gear, held, margin, mesh, loads, pin, corner)
+
+
+@compiled(inline=True)
+def _with_held(
+    m: Model, pairs: _Pairs, held: float, by_loads: tuple[float, float], pin: tuple[float, float]
+) -> tuple[Mesh, Loads, float, float]:
+    """Solve for the friction of the pair that is held and for the loads of the hubs, which depend on each other.
+
+    Parameters
+    ----------
+    held : float
+        That friction without loads.
+    by_loads : tuple of float
+        What it falls by with the loads of the hubs of pinion and gear.
+    pin : tuple of float
+        Force of the pin.
+
+    Returns
+    -------
+    mesh, loads, held, margin
+        As those of `Shafts`; the margin is that of the solution alone.
+    """
+    x, z = across(m, pairs.on_coast)
+    along, over = vector_sum(m, pairs.mesh)
+    by_pinion, by_gear = (-by_loads[0] * x, -by_loads[0] * z), (-by_loads[1] * x, -by_loads[1] * z)
+    solved = consistent_loads((along + held * x, over + held * z), by_pinion, by_gear, pin)
+    held -= by_loads[0] * solved.near.pinion + by_loads[1] * solved.near.gear
+    drive, coast, drive_friction, coast_friction = pairs.mesh
+    if pairs.on_coast:
+        coast_friction += held
+    else:
+        drive_friction += held
+    return Mesh(drive, coast, drive_friction, coast_friction), solved.near, held, solved.room
 
 
 @compiled(inline=True)

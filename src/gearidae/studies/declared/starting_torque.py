@@ -70,7 +70,8 @@ def _sentence(ds: xr.Dataset) -> str:
         return f"A gear at rest starts at {low} to {high} on the pinion, by its coating."
     torque, drive = float(_simulated(ds)[0]), float(ds.attrs.get("drive_torque", math.nan))
     if torque == float(ds["simulated_stuck"][0]):
-        return f"Adhesion does not hold a gear at rest: it starts at {with_prefix(torque, 'N m', 4)} on the pinion."
+        starts = f"it starts at {with_prefix(torque, 'N m', 4)} on the pinion"
+        return f"Adhesion of the teeth does not hold a gear at rest: {starts}."
     starts = f"A gear at rest starts at {with_prefix(torque, 'N m', 4)} on the pinion"
     if not drive > 0.0:
         return f"{starts}."
@@ -96,7 +97,21 @@ def _rows(ds: xr.Dataset) -> Rows:
         words = f"sticks at {sticks}, static {static}"
         if np.isnan(one["simulated_torque"]):
             turns, words = "-", f"no simulated torque, static {static}"
+            message = str(one["message"].values) if "message" in one else ""
+            words += f": {message}" if message else ""
         yield f"SAM {100.0 * float(one['sam_fraction']):.4g} %", turns, words
+        if "parts" in one:
+            yield from _parts(one["parts"], "of the static torque")
+
+
+def _parts(parts: xr.DataArray, words: str) -> Rows:
+    """Parts of a starting torque, where there are several."""
+    taken = [
+        (str(name), float(value)) for name, value in zip(parts["part"].values, parts.values, strict=True)
+    ]
+    taken = [(name, value) for name, value in taken if value != 0.0 and np.isfinite(value)]
+    for name, value in taken if len(taken) > 1 else ():
+        yield name, with_prefix(value, "N m", 3), words
 
 
 def _gears_sentence(ds: xr.Dataset) -> str:
@@ -122,8 +137,11 @@ def _gears_rows(ds: xr.Dataset) -> Rows:
         for share in one["quantile"].values.tolist():
             below = f"{100.0 * share:.0f} % of the gears start below"
             yield below, _torque(one["quantiles"].sel(quantile=share), one), ""
+        if "parts" in one and np.isfinite(one["parts"]).any():
+            yield from _parts(one["parts"].median("seed", skipna=True), "median of the gears that start")
         if failed := one.sizes["seed"] - count:
             yield "left out", f"{failed} of {one.sizes['seed']}", "their runs could not be finished"
+            yield from _failures(one)
         rests = round(float(one["not_started"]) * count)
         yield "not started", f"{rests} of {count}", f"when the ramp ended at {_torque(one['ramp_end'], one)}"
         if drive > 0.0:
@@ -139,6 +157,14 @@ def _gears_rows(ds: xr.Dataset) -> Rows:
             f"{float(one['damping']):.3g} N s/m",
             "at least 3 % of critical in this study",
         )
+
+
+def _failures(one: xr.Dataset) -> Rows:
+    """Gears that are left out, and why."""
+    if "message" in one:
+        for seed, message in zip(one["seed"].values.tolist(), one["message"].values.tolist(), strict=True):
+            if message:
+                yield f"gear of seed {seed}", "-", message
 
 
 def _followed(one: xr.Dataset) -> int:
@@ -292,6 +318,11 @@ STUDY = Study(
             _ALONG, "N m", "smallest simulated torque at which the gear turns from rest"
         ),
         "simulated_stuck": Column(_ALONG, "N m", "largest simulated torque at which the gear sticks"),
+        "parts": Column(
+            (*_ALONG, "part"), "N m", "what each part takes of the static torque", required=False
+        ),
+        "part": Column(("part",), "", "what takes a starting torque", required=False),
+        "message": Column(_ALONG, "", "how the run of a torque has failed", required=False),
     },
     sentence=_sentence,
     rows=_rows,
@@ -316,6 +347,11 @@ GEARS = Study(
             "whether the run of the gear could not be finished: shares are those of the others",
             required=False,
         ),
+        "parts": Column(
+            (*_ALONG, "seed", "part"), "N m", "what each part takes of the starting torque", required=False
+        ),
+        "part": Column(("part",), "", "what takes a starting torque", required=False),
+        "message": Column((*_ALONG, "seed"), "", "how the run of the gear has failed", required=False),
         "place": Column(("seed",), "1", "place of the start, in pitches", required=False),
         "quantiles": Column(
             (*_ALONG, "quantile"),
