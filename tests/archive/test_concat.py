@@ -122,8 +122,9 @@ def test_what_cannot_be_joined_is_named(run, whole):
 def cut_in_two(run, place):
     """A run as two, the second of which goes on where the first has ended: both have the sample between them."""
     time = run.time.values[place]
-    before, after = run.event_time.values <= time, run.event_time.values > time
-    return run.isel(time=slice(place + 1), event=before), run.isel(time=slice(place, None), event=after)
+    events, passages = run.event_time.values <= time, run.passage_time.values <= time
+    before = run.isel(time=slice(place + 1), event=events, passage=passages)
+    return before, run.isel(time=slice(place, None), event=~events, passage=~passages)
 
 
 @given(st.integers(1, 9))
@@ -173,7 +174,12 @@ def test_what_is_no_chain(run, whole):
     first, second = cut_in_two(run, 5)
     refused([second, first], "time", "time", "does not go on from it")
     refused([run, run], "time", "time", "does not go on from it")
-    refused([first, second.isel(time=slice(3, None), event=slice(0))], "time", "time", "a run is missing")
+    refused(
+        [first, second.isel(time=slice(3, None), event=slice(0), passage=slice(0))],
+        "time",
+        "time",
+        "a run is missing",
+    )
     fast = second.assign(gear_speed=1.5 * second.gear_speed)
     refused([first, fast], "time", "gear_speed", "as the run before ended")
     refused([first, second.drop_vars("mesh_force")], "time", "dataset 2", "all runs of the chain")
@@ -187,7 +193,8 @@ def test_a_chain_without_samples():
     """Where it is cut, its events tell."""
     run = gd.simulate(LOW.replace({KEY: 0.5}), samples="off")
     middle = run.sizes["event"] // 2
-    parts = [run.isel(event=slice(middle)), run.isel(event=slice(middle, None))]
+    whole, none = slice(None), slice(0)
+    parts = [run.isel(event=slice(middle), passage=none), run.isel(event=slice(middle, None), passage=whole)]
     parts[0]["reached"] = parts[0].event_time[-1]
     joined = gd.concat(parts, "time")
     assert np.array_equal(joined.event_time, run.event_time)

@@ -97,11 +97,11 @@ def test_opening_reads_next_to_nothing(long, lengths):
 
 def test_a_growing_archive(make_solution, tmp_path, lengths):
     """The same holds of a run under way; of a short one nothing stays behind in the file."""
-    template = to_dataset(LOW, make_solution(LOW)).isel(time=slice(0), event=slice(0))
+    template = to_dataset(LOW, make_solution(LOW)).isel(time=slice(0), event=slice(0), passage=slice(0))
     path = tmp_path / "run.nc"
     with GrowingArchive.create(path, template, SAMPLES, 0.3) as archive:
         archive._write("gear_speed", 0, np.ones(SAMPLES))
-        archive.samples = SAMPLES
+        archive.lengths = {**archive.lengths, "time": SAMPLES}
         archive._commit()
     with gd.open_archive(path) as opened:
         assert opened.sizes["time"] == SAMPLES

@@ -85,8 +85,8 @@ def test_both_drivers_agree():
     assert len(native_run.passages) == len(other.passages) > 2
     for name in Passages.columns:
         one, two = getattr(native_run.passages, name), getattr(other.passages, name)
-        # as accurate as the motion, over the largest of the numbers; peaks of the force as the step's formula
-        accuracy = 1e-4 if name.endswith("_force") else 1e-6
+        # a thousand tolerances, over the largest of the numbers; peaks of the force as accurate as the step's formula
+        accuracy = 1e-4 if name.endswith("_force") else 1e-5
         np.testing.assert_allclose(one, two, rtol=0.0, atol=accuracy * max(np.abs(one).max(), 1e-300))
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from gearidae.archive.joint import history_of, part_name, software_of
-from gearidae.archive.rows import DIMS, kinds_in
+from gearidae.archive.rows import DIMS, kinds_in, rows_from
 from gearidae.archive.select import run_scene
 from gearidae.archive.single import single_run
 from gearidae.archive.variables import RUN
@@ -53,8 +53,8 @@ def chained(parts: Sequence[xr.Dataset]) -> xr.Dataset:
     _refuse_other_samples(singles)
     cut = [singles[0]]
     for number, (before, after) in enumerate(pairwise(singles), 1):
-        _refuse_other_order(before, after, part_name(number))
         cut.append(after.isel(time=slice(_seam(before, after, part_name(number)), None)))
+        _refuse_same_rows(before, after, part_name(number))
     last = singles[-1]
     variables = {
         str(name): (
@@ -116,13 +116,16 @@ def _seam(before: xr.Dataset, after: xr.Dataset, name: str) -> int:
     return 0
 
 
-def _refuse_other_order(before: xr.Dataset, after: xr.Dataset, name: str) -> None:
-    """Refuse rows of the run before that are later than those of a run: they have not been cut with the samples."""
+def _refuse_same_rows(before: xr.Dataset, after: xr.Dataset, name: str) -> None:
+    """Refuse rows of a run that the run before has, too: they have not been cut with the samples."""
     for kind in kinds_in(after):
-        times = [part[f"{kind.dim}_time"].values for part in (before, after)]
-        if all(each.size for each in times) and times[0][-1] > times[1][0]:
+        if not (before.sizes[kind.dim] and after.sizes[kind.dim]):
+            continue
+        ends = (before.isel({kind.dim: [-1]}), after.isel({kind.dim: [0]}))
+        last, first = (rows_from(part, kind).table()[0] for part in ends)
+        if last[0] > first[0] or np.array_equal(last, first, equal_nan=True):
             allowed = f"in the {kind.field} of {name} must follow the run before: cut them with the samples"
-            raise SceneError(f"{kind.dim}_time", f"{times[1][0]:g} s", allowed)
+            raise SceneError(f"{kind.dim}_time", f"{first[0]:g} s", allowed)
 
 
 def _refuse_jump(before: xr.Dataset, after: xr.Dataset, name: str) -> None:
