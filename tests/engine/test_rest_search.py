@@ -213,21 +213,27 @@ def test_stops_on_the_way_change_nothing(kind, shaft):
 
 # -- what a rest costs -----------------------------------------------------------------------------------------------
 
-LONG = 1e4
 STEPS = 50_000  # of the landing of the pinion and of its vibration, which dies out
-LOOKS = 100_000
+LOOKS = 100_000  # half as many as there are periods in the shortest of these rests
 LANDED = 0.1
 """Until the pinion has landed [s], whose impact may push the gear on."""
 
 
+
+def rests(*seconds):
+    """Lengths of a rest [s], of which the shortest is always tested and the longest before a release."""
+    return [pytest.param(each, marks=() if each == min(seconds) else pytest.mark.by_hand) for each in seconds]
+
+
+@pytest.mark.parametrize("seconds", rests(10.0, 1e4))
 @pytest.mark.parametrize(
     ("backend", "friction"),
     [("native", {}), ("native", {"contact.friction": 0.1}), ("native", HUBS), ("sksundae", HUBS)],
 )
-def test_ten_thousand_seconds_of_rest_under_a_load_of_twenty_kilohertz(backend, friction):
-    """The load never falls to the push: no step and hardly a look is needed for 200 million periods."""
+def test_a_long_rest_under_a_load_of_twenty_kilohertz(backend, friction, seconds):
+    """The load never falls to the push: no step and hardly a look is needed for 200,000 periods or 200 million."""
     wave = {"amplitude": 4e-18, "frequency": 2e4}
-    changes = {"load.torque": 2e-17, "load.harmonic": wave, "run.duration": LONG}
+    changes = {"load.torque": 2e-17, "load.harmonic": wave, "run.duration": seconds}
     run = solve(PAIR.replace(changes | friction), backend=backend)
     assert run.status == "finished"
     assert run.statistics.steps < STEPS
@@ -236,13 +242,14 @@ def test_ten_thousand_seconds_of_rest_under_a_load_of_twenty_kilohertz(backend, 
     assert (slip_times(run) < LANDED).all()
 
 
-def test_ten_thousand_seconds_in_which_bounds_say_nothing():
+@pytest.mark.parametrize("seconds", rests(10.0, 1e4))
+def test_a_long_rest_in_which_bounds_say_nothing(seconds):
     """Two harmonics whose amplitudes together exceed what the load has above the push, and whose sum never does.
 
     ``cos x + cos 2 x`` is -9/8 at least: one common period shows it.
     """
     waves = [{"amplitude": 4e-18, "frequency": f} for f in (2e4, 4e4)]
-    changes = {"load.torque": 1.8e-17, "load.harmonic": waves, "run.duration": LONG}
+    changes = {"load.torque": 1.8e-17, "load.harmonic": waves, "run.duration": seconds}
     run = solve(PAIR.replace(changes))
     assert run.status == "finished"
     assert run.statistics.steps < STEPS
@@ -250,14 +257,16 @@ def test_ten_thousand_seconds_in_which_bounds_say_nothing():
     assert (slip_times(run) < LANDED).all()
 
 
-def test_a_ramp_of_the_load_ends_a_long_rest_in_the_right_period():
-    """A load of 20 kHz that falls to the push in 800 s: 16 million periods are passed by bisection."""
+@pytest.mark.parametrize("seconds", rests(10.0, 1e3))
+def test_a_ramp_of_the_load_ends_a_long_rest_in_the_right_period(seconds):
+    """A load of 20 kHz that falls to the push in 8 s or 800 s: its periods, 160,000 and more, are passed by bisection."""
     push, amplitude, frequency = 3 * 4e-18, 2e-18, 2e4
     # the least of a period passes below the push when the middle is an amplitude above it; the push is known to 1e-4
-    due, known = 1000.0 * (3e-17 - push - amplitude) / 2e-17, 1e-4 * push / 2e-20
+    slope = 2e-17 / seconds
+    due, known = (3e-17 - push - amplitude) / slope, 1e-4 * push / slope
     changes = {
         "load.torque": 0.0,
-        "load.schedule": [[0.0, 3e-17], [1000.0, 1e-17]],
+        "load.schedule": [[0.0, 3e-17], [seconds, 1e-17]],
         "load.harmonic": {"amplitude": amplitude, "frequency": frequency},
         "run.duration": due + known,
         "run.samples": 2,

@@ -13,10 +13,12 @@ from gearidae.engine.backend import run_blocks
 from gearidae.engine.setup.build import make_problem
 from gearidae.records import Statistics
 
-__all__ = ["BUDGET", "SCENES"]
+__all__ = ["BUDGET", "SCENES", "UNREADY"]
 
 BUDGET = 8
 """Blocks of output after which a run is left alone: some hundred thousand steps, where a sound one takes hundreds."""
+UNREADY = "unready"
+"""Ending of a run whose forged state asks for code that its scene has not had compiled, which Python says."""
 
 _RIGID = {"contact.bodies": "rigid", "run.samples": 101}
 SCENES = {
@@ -44,8 +46,13 @@ def ending(name, checkpoint):
     blocks = run_blocks(
         make_problem(scene), scene.run.rtol, scene.run.sample_count, "native", statistics, checkpoint
     )
-    if sum(1 for _ in itertools.islice(blocks, BUDGET)) == BUDGET and next(blocks, None) is not None:
-        return f"{BUDGET}_blocks"
+    try:
+        if sum(1 for _ in itertools.islice(blocks, BUDGET)) == BUDGET and next(blocks, None) is not None:
+            return f"{BUDGET}_blocks"
+    except RuntimeError as error:
+        if "has not been made ready" not in str(error):
+            raise
+        return UNREADY
     return statistics.ending.status
 
 

@@ -176,10 +176,10 @@ def kill_again_and_again(path, scene, backend, kills, share):
 @pytest.mark.usefixtures("many_small_blocks")
 def test_killed_at_five_random_instants_and_resumed_is_the_same_run(path):
     # if this process has to wait the run may reach its end before the fifth
-    assert 2 <= kill_again_and_again(path, LOW.replace({"run.duration": 0.03}), "sksundae", 5, 0.2) <= 5
+    assert 2 <= kill_again_and_again(path, LOW.replace({"run.duration": 0.015}), "sksundae", 5, 0.2) <= 5
 
 
-@pytest.mark.slow
+@pytest.mark.by_hand
 @pytest.mark.usefixtures("many_small_blocks")
 def test_killed_at_fifteen_random_instants_and_resumed_is_the_same_run(path):
     """As many as it takes to hit all that a run does; the benchmark's `--kills` repeats it as often as one likes."""

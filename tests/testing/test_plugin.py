@@ -2,48 +2,42 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 
 TEST = """
+from pathlib import Path
 import gearidae as gd
 
-SPEED = 1.5
-
 def test_run(gearidae_reference):
-    scene = gd.preset("teodorescu2009_low_speed").replace({"initial.gear_speed": SPEED, "run.samples": 11})
+    speed = float(Path("speed.txt").read_text())
+    scene = gd.preset("teodorescu2009_low_speed").replace({"initial.gear_speed": speed, "run.samples": 11})
     gearidae_reference(gd.simulate(scene, t_end=2e-3), "start", rtol=1e-6)
 """
 
 
-def pytest_in(folder, *options):
-    command = [
-        sys.executable,
-        "-m",
-        "pytest",
-        "-q",
-        "-p",
-        "gearidae.testing.plugin",
-        "-p",
-        "no:cacheprovider",
-        *options,
-    ]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-    return done.returncode, done.stdout + done.stderr
+RUNS = """
+from pathlib import Path
+import pytest
+
+for speed, options in ((1.5, []), (1.5, ["--gearidae-update"]), (1.5, []), (1.6, [])):
+    Path("speed.txt").write_text(str(speed))
+    print("run of tests", flush=True)
+    code = pytest.main(["-q", "-p", "gearidae.testing.plugin", "-p", "no:cacheprovider", *options])
+    print("exit code", int(code), "archive", Path("gearidae_references/start.nc").exists(), flush=True)
+"""
+"""One process for all runs: most of the time goes into imports."""
 
 
 def test_a_reference_is_asked_for_made_and_compared_with(tmp_path):
-    file = tmp_path / "test_mine.py"
-    file.write_text(TEST)
-    code, out = pytest_in(tmp_path)
-    assert code == 1
-    assert "make it with pytest --gearidae-update" in out
-    code, out = pytest_in(tmp_path, "--gearidae-update")
-    assert code == 0, out
-    assert (tmp_path / "gearidae_references" / "start.nc").exists()
-    code, out = pytest_in(tmp_path)
-    assert code == 0, out
-    file.write_text(TEST.replace("1.5", "1.6"))
-    code, out = pytest_in(tmp_path)
-    assert code == 1
-    assert "their scenes differ in initial.gear_speed" in out
+    (tmp_path / "test_mine.py").write_text(TEST)
+    done = subprocess.run(
+        [sys.executable, "-c", RUNS], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    first, update, same, other = done.stdout.split("run of tests\n")[1:]
+    ends = [re.search(r"^exit code (\d) archive (\w+)$", out, re.M) for out in (first, update, same, other)]
+    assert [end.groups() for end in ends] == [("1", "False"), ("0", "True"), ("0", "True"), ("1", "True")]
+    assert "make it with pytest --gearidae-update" in first
+    assert "their scenes differ in initial.gear_speed" in other
