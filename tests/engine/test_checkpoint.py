@@ -56,7 +56,7 @@ def sound():
 
 
 PROBLEMS = {}
-"""Made once for each header: restoring leaves nothing of what was before, and most of the time went into making them."""
+"""Made once for each header: restoring leaves nothing of what was before, and making them took most of the time."""
 
 
 def problem_of(name, checkpoint):

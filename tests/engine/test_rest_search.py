@@ -219,7 +219,6 @@ LANDED = 0.1
 """Until the pinion has landed [s], whose impact may push the gear on."""
 
 
-
 def rests(*seconds):
     """Lengths of a rest [s], of which the shortest is always tested and the longest before a release."""
     return [pytest.param(each, marks=() if each == min(seconds) else pytest.mark.by_hand) for each in seconds]
@@ -259,7 +258,7 @@ def test_a_long_rest_in_which_bounds_say_nothing(seconds):
 
 @pytest.mark.parametrize("seconds", rests(10.0, 1e3))
 def test_a_ramp_of_the_load_ends_a_long_rest_in_the_right_period(seconds):
-    """A load of 20 kHz that falls to the push in 8 s or 800 s: its periods, 160,000 and more, are passed by bisection."""
+    """A load of 20 kHz that falls to the push in 8 s or 800 s: its periods, 160,000 and more, are bisected."""
     push, amplitude, frequency = 3 * 4e-18, 2e-18, 2e4
     # the least of a period passes below the push when the middle is an amplitude above it; the push is known to 1e-4
     slope = 2e-17 / seconds

@@ -37,7 +37,10 @@ def test_a_reference_is_asked_for_made_and_compared_with(tmp_path):
     )
     assert done.returncode == 0, done.stderr
     first, update, same, other = done.stdout.split("run of tests\n")[1:]
-    ends = [re.search(r"^exit code (\d) archive (\w+)$", out, re.M) for out in (first, update, same, other)]
+    ends = [
+        re.search(r"^exit code (\d) archive (\w+)$", out, re.MULTILINE)
+        for out in (first, update, same, other)
+    ]
     assert [end.groups() for end in ends] == [("1", "False"), ("0", "True"), ("0", "True"), ("1", "True")]
     assert "make it with pytest --gearidae-update" in first
     assert "their scenes differ in initial.gear_speed" in other
