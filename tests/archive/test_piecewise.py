@@ -5,6 +5,7 @@ The pieces are made small here, and every read of the file is watched; the large
 
 from __future__ import annotations
 
+from functools import partial
 from importlib import import_module
 
 import numpy as np
@@ -20,9 +21,11 @@ from gearidae.archive.growing import GrowingArchive
 from gearidae.drawing import style
 from gearidae.plot import spectra
 from gearidae.report import build_report, series
+from gearidae.report.teeth import pack_teeth
 from same import assert_same
 
 teeth = import_module("gearidae.studies._tooth_contacts")
+page_module = import_module("gearidae.report.page")
 SAMPLES, PIECE, ANALYSED, DRAWN = 40_007, 512, 2_048, 200
 LOOKED_BACK = 4_096  # samples that the view of the teeth looks back at together
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.samples": SAMPLES})
@@ -42,6 +45,7 @@ def lengths(monkeypatch):
         (style, "_MOST_POINTS", DRAWN),
         (spectra, "_MOST_SAMPLES", ANALYSED),
         (teeth, "_LONGEST_STRETCH", ANALYSED),
+        (page_module, "pack_teeth", partial(pack_teeth, most_states=300)),  # which take the most time
     ):
         monkeypatch.setattr(module, name, value)
     found = []

@@ -1,5 +1,7 @@
 """Runs that cannot go on end with a name, and with what they had."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -8,6 +10,8 @@ from gearidae.engine import solve
 from gearidae.engine.integrate.driver import ending_of_flag
 from gearidae.engine.setup import build_torques
 from gearidae.records import Ending
+
+CASES = Path(__file__).parents[2] / "cases"
 
 
 @pytest.mark.parametrize("backend", ["native", "sksundae"])
@@ -71,3 +75,32 @@ def test_a_contact_beyond_the_force_laws_tables_says_so():
     assert run.status == "deflection"
     assert "elastic" in run.message
     assert run.samples["height"].min() > -45 * scene.surface.roughness
+
+
+@pytest.mark.parametrize("backend", ["native", "sksundae"])
+def test_a_run_may_end_at_an_event(backend):
+    """At the time of an event as it was found in a longer run, and a rounding error before and after it."""
+    scene = gd.preset("teodorescu2009").replace({"run.duration": 2e-5, "run.samples": 3, "run.rtol": 1e-5})
+    for time in np.unique(solve(scene, backend=backend).events.time)[:12]:
+        for end in (np.nextafter(time, 0.0), time, np.nextafter(time, 1.0)):
+            run = solve(scene.replace({"run.duration": float(end)}), backend=backend)
+            assert run.status == "finished"
+            assert run.time[-1] == end
+
+
+@pytest.mark.parametrize("backend", ["native", "sksundae"])
+def test_events_at_checkpoints_are_found(backend):
+    """A stop at the time of each event, as it was found without the stops before it."""
+    scene = gd.preset("teodorescu2009").replace({"run.duration": 2e-5, "run.samples": 3, "run.rtol": 1e-5})
+    without = solve(scene, backend=backend).events
+    times = np.unique(without.time)
+    stopped = solve(scene.replace({"run.checkpoints": times.tolist()}), backend=backend)
+    assert stopped.status == "finished"
+    assert stopped.events.kind[:12].tolist() == without.kind[:12].tolist()
+
+
+def test_the_shipped_case_at_high_speed_ends_at_every_tolerance():
+    """At 1e-5 a flank turns round at the end itself."""
+    scene = gd.load_case(CASES / "high_speed.toml").replace({"run.samples": 2})
+    for rtol in (1e-4, 1e-5, 1e-6):
+        assert solve(scene.replace({"run.rtol": rtol})).status == "finished"

@@ -7,13 +7,13 @@ import gearidae as gd
 from gearidae.engine.backend import run_blocks
 from gearidae.engine.events.record import EVENT_NUMBERS, EVENTS_AT_ONCE, record
 from gearidae.engine.followers.passages import PASSAGES_AT_ONCE
+from gearidae.engine.integrate import driver
 from gearidae.engine.integrate.driver import BLOCK_EVENTS, BLOCK_PASSAGES, Ending, Output
 from gearidae.engine.integrate.epilogue import has_room
 from gearidae.engine.model.state import MATERIALS, SLOTS_HIGH
 from gearidae.engine.setup.build import make_problem
 from gearidae.records import EventKind, Statistics
 
-KNOTS = 20_500
 FLIGHT = gd.preset("teodorescu2009").replace(
     {
         "mesh.backlash": 4e-6,
@@ -53,18 +53,26 @@ def test_room_is_for_so_many_and_what_is_full_is_not_written_beyond():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("backend", ["native", "sksundae"])
-def test_more_knots_than_a_block_has_room_for(backend):
+@pytest.mark.parametrize(
+    ("backend", "room"),
+    [
+        ("native", BLOCK_EVENTS),
+        ("sksundae", EVENTS_AT_ONCE + 1000),  # a smaller block: each knot takes this driver a millisecond
+    ],
+)
+def test_more_knots_than_a_block_has_room_for(backend, room, monkeypatch):
     """Each is an event at its own time, and a block of output never has more than it holds."""
-    times = FLIGHT.run.duration * np.arange(1, KNOTS + 1) / (KNOTS + 1)
+    monkeypatch.setattr(driver, "BLOCK_EVENTS", room)
+    knots = room + 4000
+    times = FLIGHT.run.duration * np.arange(1, knots + 1) / (knots + 1)
     schedule = [[float(t), 1e-16 * (k % 2)] for k, t in enumerate(times)]
     scene = FLIGHT.replace({"drive.schedule": schedule})
     statistics = Statistics()
     blocks = list(run_blocks(make_problem(scene), 1e-4, 3, backend, statistics))
     assert statistics.ending is Ending.FINISHED
-    assert KNOTS > BLOCK_EVENTS >= max(len(block.events) for block in blocks)
+    assert room >= max(len(block.events) for block in blocks)
     events = np.concatenate([block.events for block in blocks])
-    assert len(events) == KNOTS
+    assert len(events) == knots
     assert np.all(events[:, 1] == EventKind.SCHEDULE_KNOT)
     # times pass through the scale of time and back
     np.testing.assert_allclose(events[:, 0], times, rtol=1e-14)

@@ -10,7 +10,7 @@ from gearidae.engine.events.histories import accept
 from gearidae.engine.events.pair_events import find_event, take_event
 from gearidae.engine.events.record import EVENTS_AT_ONCE
 from gearidae.engine.events.run_stop import stop_guard
-from gearidae.engine.events.schedule_knots import keeps_checkpoint, pass_knot
+from gearidae.engine.events.schedule_knots import keeps_checkpoint, next_stop, pass_knot
 from gearidae.engine.events.sliding import follow_creeping, follow_sliding
 from gearidae.engine.followers import in_turn as followers
 from gearidae.engine.followers.passages import PASSAGES_AT_ONCE, write_passages
@@ -78,7 +78,7 @@ def finish_step(
             driver.error = LIGHT
     else:
         driver.step, driver.step_end = t - driver.step_end, t
-    if flag == STOP:
+    if flag == STOP or (flag == ROOT and t >= next_stop(m)):  # a root may lie at the stop itself
         if m.state.next_knot < m.scene.knot_count:
             if keeps_checkpoint(m):
                 driver.since = CHECKPOINT_STEPS

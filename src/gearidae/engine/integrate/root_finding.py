@@ -153,7 +153,7 @@ def next_time(s: Stepper) -> int:
         return sun.IDA_ROOT_RETURN
     _begin_interval(s, high)
     search.rest = 0
-    if search.stop != 0 and not rest:
+    if search.stop != 0:
         return _stop(s)
     return 0
 
