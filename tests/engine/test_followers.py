@@ -73,7 +73,7 @@ def test_all_are_called_in_order(calls):
         hook: [one.partition(".")[0] for one in calls if one.endswith(hook)] for hook in ("step", "finish")
     }
     assert hooks["step"] == ["joining", "extremes", "balance", "exposures"]
-    assert calls.index("extremes.step") < calls.index("rubbing.book_rubbing") < calls.index("balance.step")
+    assert calls.index("rubbing.book_rubbing") < calls.index("extremes.step") < calls.index("balance.step")
     assert hooks["finish"] == ["balance", "exposures"]
     assert calls.index("joining.event") < calls.index("exposures.event")
 
