@@ -110,7 +110,14 @@ class Reference:
 
 
 _YOUNGER: Final[dict[str, dict[str, Any]]] = {
-    "run": {"method": "auto", "stop": "time", "exposures": 0, "balance": True, "asperity_events": True},
+    "run": {
+        "method": "auto",
+        "stop": "time",
+        "exposures": 0,
+        "balance": True,
+        "passages": True,
+        "asperity_events": True,
+    },
     "contact": {
         "seed": 0,
         "radius_spread": 0.0,
@@ -118,10 +125,14 @@ _YOUNGER: Final[dict[str, dict[str, Any]]] = {
         "friction_law": "coulomb",
         "shear_strength": 0.0,
     },
-    "gears": {"hub_friction": 0.0, "pinion_hub_radius": 0.0, "gear_hub_radius": 0.0},
+    "gears": dict.fromkeys(
+        ("hub_friction", "pinion_hub_radius", "gear_hub_radius", "pinion_hub_adhesion", "gear_hub_adhesion")
+        + ("pinion_axial_load", "gear_axial_load", "pinion_dimple_radius", "gear_dimple_radius"),
+        0.0,
+    ),
     "mesh": {"radius_force": False, "film_damping": 0.0, "film_gap": 0.0},
     "surface": {"provenance": "", "hamaker": 0.0},
-    "drive": {"speed_gain": 0.0},
+    "drive": {"speed_gain": 0.0, "orientation": 0.0, "pin_radius": 0.0},
     "load": {"viscous": 0.0},
     "coating": {"pairing": "patches", "thickness": 0.0, "hamaker": 0.0},
 }
