@@ -126,8 +126,17 @@ _YOUNGER: Final[dict[str, dict[str, Any]]] = {
         "shear_strength": 0.0,
     },
     "gears": dict.fromkeys(
-        ("hub_friction", "pinion_hub_radius", "gear_hub_radius", "pinion_hub_adhesion", "gear_hub_adhesion")
-        + ("pinion_axial_load", "gear_axial_load", "pinion_dimple_radius", "gear_dimple_radius"),
+        (
+            "hub_friction",
+            "pinion_hub_radius",
+            "gear_hub_radius",
+            "pinion_hub_adhesion",
+            "gear_hub_adhesion",
+            "pinion_axial_load",
+            "gear_axial_load",
+            "pinion_dimple_radius",
+            "gear_dimple_radius",
+        ),
         0.0,
     ),
     "mesh": {"radius_force": False, "film_damping": 0.0, "film_gap": 0.0},
