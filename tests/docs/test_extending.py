@@ -169,6 +169,7 @@ from types import SimpleNamespace
 import numpy as np
 from gearidae.archive.variables import EVENTS
 from gearidae.engine.events import mesh_marks
+from gearidae.engine.events.record import EVENT_NUMBERS
 from gearidae.records import EventKind
 
 assert "pitch_point" in EVENTS["event_kind"].attributes["flag_meanings"].split()
@@ -177,7 +178,7 @@ ratio, approach = 1.6, 0.7
 scene = SimpleNamespace(contact_ratio=ratio, coast_phase=2.0 * approach + 0.5, time_unit=1.0, length_unit=1.0)
 extremes = SimpleNamespace(mesh_exits=0)
 m = SimpleNamespace(scene=scene, state=SimpleNamespace(turns=0.0, extremes=extremes))
-events, count = np.zeros((99, 6)), 0
+events, count = np.zeros((99, EVENT_NUMBERS)), 0
 for sign in (1.0, -1.0):
     mesh_marks.set_marks(m, sign * -0.01)
     first = count
