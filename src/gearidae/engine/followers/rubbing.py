@@ -180,14 +180,19 @@ def book_rubbing(m: Model, t: float, y: Floats, root: bool, between: Floats, rat
         note_rubbing(m, t, y)
         return
     middle, halved = first, a.order_used > 0
-    end, bend = (7.0 / 30.0 * h, h * h / 60.0) if halved else (0.5 * h, h * h / 12.0)  # weights of the rule
-    add_rubbing(m, end, bend)
+    # weights of the rule, of powers and rates at both ends
+    begin, end, first_bend, last_bend = 0.5 * h, 0.5 * h, h * h / 12.0, -h * h / 12.0
+    if halved:
+        begin, end, first_bend, last_bend = 7.0 / 30.0 * h, 7.0 / 30.0 * h, h * h / 60.0, -h * h / 60.0
+    elif bends:  # of a parabola
+        begin, end, first_bend, last_bend = 2.0 / 3.0 * h, h / 3.0, h * h / 6.0, 0.0
+    add_rubbing(m, begin, first_bend)
     if halved:
         _note_within(m, start + 0.5 * h, between, rates)
         add_rubbing(m, 16.0 / 30.0 * h, 0.0)
         middle = _copied(m.work.rubbing.power)
     note_rubbing(m, t, y)
-    add_rubbing(m, end, -bend)
+    add_rubbing(m, end, last_bend)
     if keeps_rubbing(m):
         divide_rubbing(m, between if halved else y)
     for i in range(_POWERS):
