@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from gearidae.asperities.tip import asperity_of
 from gearidae.contact.line import line_force
 from gearidae.mesh.involute import curvature_radii, separation
-from gearidae.records import EnergyBalance, ExposureRows, Extremes
+from gearidae.records import EVENT, EnergyBalance, EventKind, ExposureRows, Extremes
 from gearidae.scene import MATERIAL_NAMES, Scene
 from gearidae.scene.combinations import may_deflect
 from gearidae.scene.friction import has_flank_friction
@@ -24,6 +24,7 @@ __all__ = ["complaint_about", "complaint_about_exposures"]
 
 Floats = NDArray[np.float64]
 
+_WITH_FORCE = [EventKind.ONSET, EventKind.SEPARATION]
 _CHECKED_SAMPLES = 24
 _GAP_TOLERANCE = 1e-7  # of the roughness: rounding of angles and radii
 _FAR = 10.0  # lengths of adhesion, by which every law's asperities have let go
@@ -46,7 +47,8 @@ def complaint_about(scene: Scene, rows: Floats, events: Floats, unit: float, *, 
     scene : Scene
     rows : ndarray
         Samples, as the engine's blocks have them.
-    events : ndarray, shape (m, 6)
+    events : ndarray, shape (m, n)
+        In the columns `gearidae.records.EVENT`.
     unit : float
         The engine's reference force of the scene [N].
     rigid : bool
@@ -57,8 +59,12 @@ def complaint_about(scene: Scene, rows: Floats, events: Floats, unit: float, *, 
     str
         Empty if nothing is wrong.
     """
-    if not np.isfinite(rows).all() or not np.isfinite(events).all():
+    with_force = np.isin(events[:, EVENT.kind], _WITH_FORCE)
+    known = np.isfinite(events)
+    if not np.isfinite(rows).all() or not np.delete(known, EVENT.force, axis=1).all():
         return "not finite"
+    if np.any(known[:, EVENT.force] != with_force):
+        return "events with a force are not the onsets and separations"
     if len(events) and (np.any(np.diff(events[:, 0]) < 0) or events[0, 0] < 0):
         return "events out of order"
     chosen = rows[np.unique(np.linspace(0, len(rows) - 1, _CHECKED_SAMPLES).astype(int))]

@@ -58,6 +58,7 @@ def test_settings_of_the_call_end_up_in_the_scene():
         "stop": "time",
         "exposures": 0,
         "balance": True,
+        "passages": True,
         "asperity_events": True,
     }
     assert (ds.attrs["rtol"], ds.attrs["t_end"]) == (1e-5, 1e-3)
