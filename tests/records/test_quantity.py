@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from gearidae.archive.variables import BESIDE_BALANCE, ENERGY_BALANCE, EXTREMES, by_name
+from gearidae.archive.variables import ENERGY_TOTALS, EXTREMES, by_name
 from gearidae.engine.model.checkpoint_record import STATE, STATE_FIELDS
 from gearidae.records import EnergyBalance, Extremes
 from gearidae.records.energy import ENERGY_NOW, ENERGY_SUMS, LOSSES, TERMS
@@ -92,7 +92,7 @@ def test_whole_numbers_have_no_units_and_bounds():
 def test_names_in_an_archive_are_of_one_quantity_each():
     names = [name for each in (*ENERGY_SUMS, *ENERGY_NOW, *GEAR_EXTREMES) for name in each.archive]
     assert len(names) == len(set(names))
-    assert set(names) <= {*ENERGY_BALANCE, *BESIDE_BALANCE, *EXTREMES} <= set(by_name())
+    assert set(names) <= {*ENERGY_TOTALS, *EXTREMES} <= set(by_name())
     assert all(LOSSES[name].sign == -1 and name in TERMS for name in LOSSES)
 
 

@@ -20,8 +20,7 @@ from gearidae.archive.select import run_value, runs, scene_of, swept_dims
 from gearidae.archive.single import single_run
 from gearidae.archive.stack import Axis, stack
 from gearidae.archive.variables import (
-    BESIDE_BALANCE,
-    ENERGY_BALANCE,
+    ENERGY_TOTALS,
     EXPOSURES,
     EXTREMES,
     RUN,
@@ -289,15 +288,14 @@ def _number(run: xr.Dataset, name: str) -> Any:
 def _with_numbers(ds: xr.Dataset, parts: Sequence[xr.Dataset], found: Sequence[_Run]) -> xr.Dataset:
     """Put in what is taken from the runs' datasets as it is: extremes, energy balances, verdicts, and totals."""
     dims, shape = ds["status"].dims, ds["status"].shape
-    energies = {**ENERGY_BALANCE, **BESIDE_BALANCE}
     for name, variable in {
-        **energies,
+        **ENERGY_TOTALS,
         **EXTREMES,
         STANDSTILL_LIST.name: STANDSTILL_LIST,
         **VERDICT,
     }.items():
         known = [name in each.picked and not each.picked[name].dims for each in found]
-        if all(known) or (name in energies and any(known)):
+        if all(known) or (name in ENERGY_TOTALS and any(known)):
             numbers = [
                 each.picked[name].values.item() if has else math.nan
                 for each, has in zip(found, known, strict=True)

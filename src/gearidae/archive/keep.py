@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gearidae.archive.variables import (
-    BESIDE_BALANCE,
     CONTACT,
-    ENERGY_BALANCE,
+    ENERGY_TOTALS,
     EVENTS,
     EXPOSURES,
     OF_SWEPT_RUN,
@@ -128,7 +127,7 @@ def read_keep(keep: Iterable[str] | str | None, scene: Scene) -> Keep:
         "verdict": tuple(VERDICT),
         "extremes": (*extremes, *([] if scene.roller is not None else [STANDSTILL_LIST.name])),
         "statistics": (*RUN, *(each.name for each in CONTACT)),
-        "energy_balance": (*ENERGY_BALANCE, *BESIDE_BALANCE),
+        "energy_balance": tuple(ENERGY_TOTALS),
         "scene": ("scene",),
         "exposures": tuple(EXPOSURES),
         **({"passages": tuple(PASSAGES)} if scene.roller is None else {}),

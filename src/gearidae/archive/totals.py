@@ -10,8 +10,7 @@ import numpy as np
 
 from gearidae.archive.extremes import standstills_as_text
 from gearidae.archive.variables import (
-    BESIDE_BALANCE,
-    ENERGY_BALANCE,
+    ENERGY_TOTALS,
     EXTREMES,
     ROLLER_EXTREMES,
     STANDSTILL_LIST,
@@ -54,8 +53,7 @@ def total_variables(
 
     made: dict[Hashable, Any] = {}
     balances = [_energies(each, run.balance) for each, run in zip(scenes, runs, strict=True)]
-    numbers_kept = {**ENERGY_BALANCE, **BESIDE_BALANCE}
-    for name, variable in numbers_kept.items() if any(balances) else ():
+    for name, variable in ENERGY_TOTALS.items() if any(balances) else ():
         energies = (numbers.get(name, math.nan) for numbers in balances)
         made[name] = (dims, stacked(energies, variable.dtype), variable.attributes)
     extremes = [run.extremes or Extremes() for run in runs]

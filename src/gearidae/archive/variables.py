@@ -294,11 +294,12 @@ ENERGY_BALANCE: Mapping[str, Variable] = {
     **{name: variable for name, variable in _SUMS.items() if name not in SLIDING},
     **{variable.name: variable for variable in _RESIDUAL},
 }
-BESIDE_BALANCE: Mapping[str, Variable] = {
+ENERGY_TOTALS: Mapping[str, Variable] = {
+    **ENERGY_BALANCE,
     **{name: _SUMS[name] for name in SLIDING},
     _EFFICIENCY.name: _EFFICIENCY,
 }
-"""What a run with an energy balance keeps besides; archives of version 0.2 have none of it."""
+"""The balance, and what a run with one keeps besides, of which archives of version 0.2 have nothing."""
 ROLLER_EXTREMES: Mapping[str, Variable] = {
     **Variable.catalogue(records.ROLLER_EXTREMES),
     _MIN_SEPARATION.name: _MIN_SEPARATION,
@@ -337,8 +338,7 @@ def by_name() -> dict[str, Variable]:
         **RUN,
         **OF_SWEPT_RUN,
         **VERDICT,
-        **ENERGY_BALANCE,
-        **BESIDE_BALANCE,
+        **ENERGY_TOTALS,
         **EXTREMES,
         STANDSTILL_LIST.name: STANDSTILL_LIST,
         **EXPOSURES,

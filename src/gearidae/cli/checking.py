@@ -135,28 +135,18 @@ def _friction(scene: Scene) -> Rows:
             yield "lost to flank friction", f"{100 * loss:.3g} %", "of the drive's work, at a constant force"
     if not has_joint_friction(scene):
         return
-    if not has_pin(scene):
-        lost = 1.0 - hub_share(geometry, coefficient, radii)
-        yield (
-            "lost to hub friction",
-            f"{100 * lost:.3g} %",
-            "of the drive's work, without adhesion and axial loads",
-        )
-    where = (
-        "under the mean drive"
-        if scene.drive is None or scene.drive.law is None
-        else "under the dry load alone"
-    )
+    where = "at the load of the initial speed" if scene.drive and scene.drive.law else "under the mean drive"
     for joint, load in joint_loads(scene, mean_force(scene)):
         torque = f"friction takes {joint.torque(load):.4g} N m"
         yield f"load of the {joint.name}", f"{load * 1e6:.4g} uN", f"{torque} of its shaft, {where}"
+    if has_pin(scene):
+        return
+    lost = 1.0 - hub_share(geometry, coefficient, radii)
+    words = "of the drive's work, without adhesion and axial loads"
+    yield "lost to hub friction", f"{100 * lost:.3g} %", words
     start = hub_starting_torque(geometry, scene.load.torque, coefficient, radii, hub_constants(scene))
-    if not has_pin(scene):
-        yield (
-            "starting torque",
-            f"{start:.4g} N m",
-            "of the pinion: dry resistance and hubs, without the teeth",
-        )
+    words = "of the pinion: dry resistance and hubs, without the teeth"
+    yield "starting torque", f"{start:.4g} N m", words
 
 
 def _roller(scene: Scene) -> Rows:

@@ -55,13 +55,13 @@ ENERGY_SUMS: Final = (
     _loss("pin_loss", "energy lost to friction of the pin", archive=True, group="friction", since="0.3"),
     Quantity(
         "sliding",
-        "loads of the joints times the ways of their surfaces",
+        "loads of the joints, integrated over their sliding distances",
         Unit("F sigma", "N m", force=1, length=1),
         shape=(3,),
         archive={
-            "pinion_hub_sliding": "load of the pinion's hub times the way of its surface, summed up",
-            "gear_hub_sliding": "load of the gear's hub times the way of its surface, summed up",
-            "pin_sliding": "load of the pin times the way of its surface, summed up",
+            "pinion_hub_sliding": "load of the pinion's hub, integrated over its sliding distance",
+            "gear_hub_sliding": "load of the gear's hub, integrated over its sliding distance",
+            "pin_sliding": "load of the pin, integrated over its sliding distance",
         },
         since="0.3",
     ),

@@ -41,19 +41,27 @@ class Joint:
     axial_load: float = 0.0
     dimple_radius: float = 0.0
 
+    @property
+    def arm(self) -> float:
+        """Torque of friction over the load across the axis [m]."""
+        return self.coefficient * self.radius
+
+    @property
+    def axial_torque(self) -> float:
+        """Torque of friction of the axial load [N m]."""
+        return self.coefficient * self.dimple_radius * self.axial_load
+
     def torque(self, load: float) -> float:
         """Return the torque [N m] that friction takes, or holds, under a load across the axis [N]."""
-        return self.coefficient * (
-            self.radius * (load + self.adhesion) + self.dimple_radius * self.axial_load
-        )
+        return self.arm * (load + self.adhesion) + self.axial_torque
 
     @property
     def holding(self) -> Holding:
         """What of the joint may hold a gear."""
         holding = Holding(0)
-        if self.coefficient * self.radius > 0.0:
+        if self.arm > 0.0:
             holding |= Holding.PIN_FRICTION if self.name == "pin" else Holding.HUB_FRICTION
-        if self.coefficient * self.dimple_radius * self.axial_load > 0.0:
+        if self.axial_torque > 0.0:
             holding |= Holding.AXIAL_LOAD
         return holding
 
@@ -120,7 +128,7 @@ def check_joints(scene: Scene) -> None:
     radii = {"pinion": scene.geometry.base_radius_pinion, "gear": scene.geometry.base_radius_gear}
     for shaft, base in radii.items():
         hub = there.get(f"{shaft} hub")
-        if hub is not None and hub.torque(1.0) - hub.torque(0.0) >= base:
+        if hub is not None and hub.arm >= base:
             limit = base / hub.coefficient
             reason = f"must be below {limit:.4g} m: the hub locks the {shaft} from there on"
             raise SceneError(f"gears.{shaft}_hub_radius", hub.radius, reason)
@@ -158,9 +166,7 @@ def _check_circle(scene: Scene, there: dict[str, Joint]) -> None:
     circle = (
         (drive.law.model_extra or {}).get("radius") if drive is not None and drive.law is not None else None
     )
-    taken = sum(
-        there[name].torque(1.0) - there[name].torque(0.0) for name in ("pinion hub", "pin") if name in there
-    )
+    taken = sum(joint.arm for name, joint in there.items() if name != "gear hub")
     if has_pin(scene) and isinstance(circle, float) and taken >= circle:
         raise SceneError(
             "drive.pin_radius",

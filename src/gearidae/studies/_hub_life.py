@@ -18,7 +18,8 @@ from gearidae.runs.kept_runs import KeptRuns
 from gearidae.scene.joints import joints
 from gearidae.scene.quantity import Quantity, whole
 from gearidae.studies.declared.hub_life import FITTED, QUANTILES, STUDY
-from gearidae.studies.hub_turns import FAILS, SUMS, Slid, Turns, run_turns, settling_scene
+from gearidae.studies.failures import failure_of
+from gearidae.studies.hub_turns import SUMS, Slid, Turns, run_turns, settling_scene
 from gearidae.studies.hub_wear import (
     Threshold,
     drawn_factors,
@@ -219,7 +220,7 @@ def _wear(
 def _dataset(
     scene: Scene, wear: _Wear, requested: list[float] | None, words: list[str], *, clearance: bool
 ) -> xr.Dataset:
-    failures = [word.removeprefix(FAILS) if word.startswith(FAILS) else "" for word in words]
+    failures = [failure_of(word) for word in words]
     for failure in filter(None, failures):
         log.warning("one frequency has no life: %s", failure)
     if all(failures):

@@ -19,9 +19,9 @@ from gearidae.runs.execution import Execution, SideBySide
 from gearidae.runs.kept_runs import KeptRuns
 from gearidae.scene.quantity import whole
 from gearidae.studies.declared.starting_torque import GEARS, SEEDS, SLOW_ENOUGH
+from gearidae.studies.failures import failure_of
 from gearidae.studies.starting_parts import PARTS, parts_of
 from gearidae.studies.starting_ramp import (
-    FAILS,
     RESTS,
     constant,
     laid,
@@ -117,11 +117,11 @@ class _Runs:
         found = []
         self.messages = []
         for _, word in self.compute(run_from_rest, scenes):
-            failed = word.startswith(FAILS)
-            self.messages.append(word.removeprefix(FAILS) if failed else "")
-            if failed:
-                log.warning("one gear is left out: %s", self.messages[-1])
-            found.append(math.nan if failed else math.inf if word == RESTS else float(word))
+            failure = failure_of(word)
+            self.messages.append(failure)
+            if failure:
+                log.warning("one gear is left out: %s", failure)
+            found.append(math.nan if failure else math.inf if word == RESTS else float(word))
         return np.array(found)
 
 

@@ -24,10 +24,11 @@ from gearidae.scene.quantity import whole
 from gearidae.studies._starting_seeds import starting_torques
 from gearidae.studies.bracket import STRIDE, bracket, next_value
 from gearidae.studies.declared.starting_torque import STUDY
+from gearidae.studies.failures import FAILS, failure_of
 from gearidae.studies.release import holding_forces
 from gearidae.studies.requirements import require_constant, require_gears
 from gearidae.studies.starting_parts import PARTS, Starting, parts_of
-from gearidae.studies.starting_ramp import FAILS, nothing_followed, pitch_of
+from gearidae.studies.starting_ramp import nothing_followed, pitch_of
 
 if TYPE_CHECKING:
     from gearidae.records import Solution
@@ -281,8 +282,8 @@ def _search_all(searches: Sequence[_Search], tolerance: float, how: Execution, k
             found = compute(_run_from_rest, scenes, _way(todo[0][0]))
             for (each, torque), (_, word) in zip(todo, found, strict=True):
                 each.turned[torque] = word == "turns"
-                if word.startswith(FAILS):
-                    each.failure = word.removeprefix(FAILS)
+                if failure := failure_of(word):
+                    each.failure = failure
                     log.warning("one coverage has no simulated torque: %s", each.failure)
             if all(each.failure for each in searches):
                 raise nothing_followed("coverage", searches[-1].failure)

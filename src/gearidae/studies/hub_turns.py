@@ -13,6 +13,7 @@ from gearidae import engine
 from gearidae.arrays import Floats
 from gearidae.errors import SolverError
 from gearidae.runs.running import solve_to_end, unfinished, unsolved
+from gearidae.studies.failures import FAILS
 
 if TYPE_CHECKING:
     from gearidae.records import Solution
@@ -24,8 +25,6 @@ SUMS: Final = {
     "pin": "pin_sliding",
 }
 """Joints, and the totals of a run that say what they have slid."""
-FAILS: Final = "fails: "
-"""What the word of a run without an answer begins with; the message follows."""
 _PATIENCE: Final = 4.0
 """Time that a block gets, over that of its turns at the speed with which it begins."""
 _MOST_BLOCKS: Final = 20

@@ -26,7 +26,7 @@ from numpy.typing import ArrayLike
 from gearidae.arrays import Floats
 from gearidae.mesh.friction import starting_ratio
 from gearidae.runs.estimates import mean_force
-from gearidae.runs.rubbing import flank_coefficient, joint_loads
+from gearidae.runs.rubbing import flank_coefficient, hub_radii, joint_loads
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -59,8 +59,7 @@ class Starting:
         gears, geometry = self.scene.gears, self.scene.geometry
         assert gears is not None
         hubs = gears.hub_friction if "hubs" in self.elements else 0.0
-        radii = gears.pinion_hub_radius, gears.gear_hub_radius
-        return starting_ratio(geometry, self._flanks, hubs, radii)
+        return starting_ratio(geometry, self._flanks, hubs, hub_radii(self.scene))
 
     @property
     def _flanks(self) -> float:
@@ -74,12 +73,10 @@ class Starting:
         """What the joints of pinion and gear take without a force of the teeth [N m]."""
         shafts = [0.0, 0.0]
         for joint, load in joint_loads(self.scene, 0.0):
-            across = joint.coefficient * joint.radius * (load + joint.adhesion)
-            along = joint.coefficient * joint.dimple_radius * joint.axial_load
             kind = "pin" if joint.name == "pin" else "hubs"
-            shafts[joint.name == "gear hub"] += across * (kind in self.elements) + along * (
-                "axial" in self.elements
-            )
+            taken = joint.arm * (load + joint.adhesion) if kind in self.elements else 0.0
+            taken += joint.axial_torque if "axial" in self.elements else 0.0
+            shafts[joint.name == "gear hub"] += taken
         return shafts[0], shafts[1]
 
     def torque(self) -> float:

@@ -19,6 +19,7 @@ from gearidae.mesh.pair_contact import asperity_stiffness
 from gearidae.populations.first_touch import first_touch
 from gearidae.runs.estimates import effective_mass
 from gearidae.runs.running import solve_to_end, unfinished, unsolved
+from gearidae.studies.failures import FAILS
 from gearidae.studies.starting_parts import WITHOUT_FLANKS, Starting
 
 if TYPE_CHECKING:
@@ -53,8 +54,6 @@ _TIGHTEST: Final = 1e-12
 
 RESTS = "rests"
 """Word of a run in which the gear has not turned a pitch."""
-FAILS = "fails: "
-"""What the word of a run that could not be finished begins with; the message follows."""
 Knots = list[tuple[float, float]]
 
 

@@ -35,9 +35,6 @@ def record(
     t, kind, pair, flank, rate : float
         Time over tau, what has happened where, and the pair's gap rate, scaled.
     """
-    if kind == _ONSET:
-        for side in range(2):
-            m.state.passage[side].impacts += 1
     if count >= events.shape[0]:
         return count
     events[count, _TIME] = t * m.scene.time_unit
@@ -54,8 +51,11 @@ def record(
 def record_contact(
     m: Model, y: Floats, events: Floats, count: int, what: tuple[float, float, int, int, float]
 ) -> int:
-    """Write an onset or a separation likewise, with the force of the pair at a state."""
+    """Write an onset or a separation likewise, with the force of the pair at a state; count impacts for passages."""
     t, kind, pair, flank, rate = what
+    if kind == _ONSET:
+        for side in range(2):
+            m.state.passage[side].impacts += 1
     after = record(m, events, count, t, kind, pair, flank, rate)
     if after > count:
         events[count, _FORCE] = force_of_one(m, t, y, flank, pair) * m.scene.force_unit

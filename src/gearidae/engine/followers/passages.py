@@ -29,7 +29,6 @@ PASSAGES_AT_ONCE: Final = MARKS
 """Most that can be at one accepted time: one for each kind of mesh mark."""
 _MESH_EXIT: Final = float(EventKind.MESH_EXIT)
 _KIND, _PAIR, _FLANK = EVENT.kind, EVENT.pair, EVENT.flank
-_ROW: Final = PASSAGE
 
 
 def _words(record: np.dtype, fields: Sequence[Quantity]) -> tuple[int, ...]:
@@ -80,7 +79,7 @@ def write_passages(
     """
     for i in range(new[0], new[1]):
         if events[i, _KIND] == _MESH_EXIT and count < rows.shape[0]:
-            rows[count, _ROW.pair], rows[count, _ROW.flank] = events[i, _PAIR], events[i, _FLANK]
+            rows[count, PASSAGE.pair], rows[count, PASSAGE.flank] = events[i, _PAIR], events[i, _FLANK]
             _fill(m, t, y, int(events[i, _FLANK]), rows[count])
             count += 1
     return count
@@ -90,9 +89,9 @@ def write_passages(
 def _fill(m: Model, t: float, y: Floats, flank: int, row: Floats) -> None:
     """Write what has been since the last mesh exit of a flank and the running sums, and begin anew with the force."""
     p = m.state.passage[flank]
-    row[_ROW.time] = t
-    row[_ROW.largest_force], row[_ROW.smallest_force] = p.largest_force, p.smallest_force
-    row[_ROW.impacts] = p.impacts
+    row[PASSAGE.time] = t
+    row[PASSAGE.largest_force], row[PASSAGE.smallest_force] = p.largest_force, p.smallest_force
+    row[PASSAGE.impacts] = p.impacts
     if m.scene.follow.balance != 0:
         adhesion, radius = note_changes(m, y)
         sums, changes = numbers_of(m.state.energy), numbers_of(m.work.energy_now)

@@ -1,6 +1,6 @@
 """Losses by friction of flanks and joints, integrated over every step from powers and their rates at both ends.
 
-The sliding of a joint, its load times the way of its surfaces, is integrated with them.
+The sliding of a joint, the integral of its load over its sliding distance, is found with them.
 """
 
 from __future__ import annotations

@@ -23,7 +23,7 @@ import math
 from typing import NamedTuple
 
 from gearidae.compiled import compiled
-from gearidae.engine.friction.hubs import Loads, across, consistent_loads
+from gearidae.engine.friction.hubs import Loads, across, consistent_loads, loads_with_friction
 from gearidae.engine.model.record_types import HELD_GEAR
 from gearidae.engine.model.state import Model
 
@@ -144,7 +144,6 @@ def _reserve_of_gear(limits: _Limits, loads: Loads, force: float) -> float:
 def _with_one(m: Model, left: _Left, i: int, limits: _Limits) -> float:
     """Largest reserve where the friction of one pair is such that one shaft is held by all that it has."""
     one, best = m.work.rubbing.element[i], -math.inf
-    first, second = across(m, one.coast != 0)
     for which in range(4):
         sign = 1.0 - 2.0 * (which % 2)
         falls = gear_falls = 0.0
@@ -154,9 +153,10 @@ def _with_one(m: Model, left: _Left, i: int, limits: _Limits) -> float:
         else:
             constant = (left.gear - sign * limits.gear_dry) / one.gear
             gear_falls = sign * limits.gear / one.gear
-        u = (left.along + constant * first, left.over + constant * second)
-        by_pinion, by_gear = (-falls * first, -falls * second), (-gear_falls * first, -gear_falls * second)
-        near, far, room = consistent_loads(u, by_pinion, by_gear, limits.pin)
+        total = (left.along, left.over)
+        near, far, room = loads_with_friction(
+            m, one.coast != 0, total, constant, (falls, gear_falls), limits.pin
+        )
         for end in range(2):
             loads = far if end else near
             friction = constant - falls * loads.pinion - gear_falls * loads.gear

@@ -16,9 +16,8 @@ from gearidae.engine.compiling import FRICTION
 from gearidae.engine.friction.hubs import (
     Loads,
     Mesh,
-    across,
-    consistent_loads,
     has_hubs,
+    loads_with_friction,
     pin_force,
     turning_loads,
     vector_sum,
@@ -231,10 +230,7 @@ def _with_held(
     mesh, loads, held, margin
         As those of `Shafts`; the margin is that of the solution alone.
     """
-    x, z = across(m, pairs.on_coast)
-    along, over = vector_sum(m, pairs.mesh)
-    by_pinion, by_gear = (-by_loads[0] * x, -by_loads[0] * z), (-by_loads[1] * x, -by_loads[1] * z)
-    solved = consistent_loads((along + held * x, over + held * z), by_pinion, by_gear, pin)
+    solved = loads_with_friction(m, pairs.on_coast, vector_sum(m, pairs.mesh), held, by_loads, pin)
     held -= by_loads[0] * solved.near.pinion + by_loads[1] * solved.near.gear
     drive, coast, drive_friction, coast_friction = pairs.mesh
     if pairs.on_coast:

@@ -134,6 +134,35 @@ class Solutions(NamedTuple):
     room: float
 
 
+@compiled(inline=True)
+def loads_with_friction(
+    m: Model,
+    coast: bool,
+    total: tuple[float, float],
+    friction: float,
+    falls: tuple[float, float],
+    pin: tuple[float, float],
+) -> Solutions:
+    """Solve for the loads of both hubs where the friction of one pair falls with them.
+
+    Parameters
+    ----------
+    coast : bool
+        Whether the pair is of the coast flank.
+    total : tuple of float
+        `vector_sum` without that friction.
+    friction : float
+        Without loads.
+    falls : tuple of float
+        What it falls by with the loads of the hubs of pinion and gear.
+    pin : tuple of float
+        As `pin_force` has it.
+    """
+    x, z = across(m, coast)
+    u = (total[0] + friction * x, total[1] + friction * z)
+    return consistent_loads(u, (-falls[0] * x, -falls[0] * z), (-falls[1] * x, -falls[1] * z), pin)
+
+
 @compiled
 def consistent_loads(
     u: tuple[float, float],

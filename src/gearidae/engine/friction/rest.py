@@ -20,8 +20,8 @@ from gearidae.engine.friction.hubs import (
     Loads,
     Mesh,
     across,
-    consistent_loads,
     has_hubs,
+    loads_with_friction,
     pin_force,
     vector_sum,
 )
@@ -196,11 +196,8 @@ def _along(m: Model, pinion: float, gear: float, x: float, y: float, i: int) -> 
     near = far = _loads(m, s)
     room = math.inf
     if one.hold == HELD_PAIR:
-        first, second = across(m, one.coast != 0)
-        u = (s.along + held * first, s.over + held * second)
-        by_pinion, by_gear = (-falls * first, -falls * second), (-gear_falls * first, -gear_falls * second)
-        pin = m.work.rubbing.pin
-        near, far, room = consistent_loads(u, by_pinion, by_gear, (pin[0], pin[1]))
+        total, pin = (s.along, s.over), (m.work.rubbing.pin[0], m.work.rubbing.pin[1])
+        near, far, room = loads_with_friction(m, one.coast != 0, total, held, (falls, gear_falls), pin)
     best = Way(0.0, 0.0, -math.inf, i)
     for which in range(2):
         loads = far if which else near

@@ -57,18 +57,15 @@ def _add_joints(s: Record, scene: Scene, geometry: Geometry) -> None:
     own = s.friction
     pinion, gear, force = geometry.base_radius_pinion, geometry.base_radius_gear, float(s.force_unit)
     for joint in joints(scene):
-        by_load, constant = joint.torque(1.0) - joint.torque(0.0), joint.torque(0.0)
+        constant = joint.torque(0.0) / force
         if joint.name == "pin":
-            own.pin, own.pin_arm = by_load / pinion, joint.radius / pinion
+            own.pin, own.pin_arm = joint.arm / pinion, joint.radius / pinion
         elif joint.name == "gear hub":
-            own.gear_hub, own.gear_arm, own.gear_constant = (
-                by_load / gear,
-                joint.radius / gear,
-                constant / gear / force,
-            )
+            own.gear_hub, own.gear_arm = joint.arm / gear, joint.radius / gear
+            own.gear_constant = constant / gear
         else:
-            own.pinion_hub, own.pinion_arm = by_load / pinion, joint.radius / pinion
-            own.pinion_constant = constant / pinion / force
+            own.pinion_hub, own.pinion_arm = joint.arm / pinion, joint.radius / pinion
+            own.pinion_constant = constant / pinion
         own.holding |= int(joint.holding)
     own.pinion_rubs = int(own.pinion_hub > 0.0 or own.pinion_constant > 0.0 or own.pin > 0.0)
     own.gear_rubs = int(own.gear_hub > 0.0 or own.gear_constant > 0.0)

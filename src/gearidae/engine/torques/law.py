@@ -168,10 +168,17 @@ def law_value(m: Model, shaft: int, t: float, angle: float, speed: float) -> flo
 def law_rate(m: Model, shaft: int, t: float, angle: float, speed: float, acceleration: float) -> float:
     """Rate of change of `law_value` along the motion, by a central difference; one-sided where the run begins."""
     low, high = max(t - STEP, 0.0), t + STEP
-    turn = speed * m.scene.torque[shaft].angle_unit
-    before = law_value(m, shaft, low, angle - (t - low) * turn, speed - (t - low) * acceleration)
-    after = law_value(m, shaft, high, angle + (high - t) * turn, speed + (high - t) * acceleration)
+    before = law_value(m, shaft, low, *_moved(m, shaft, low - t, angle, speed, acceleration))
+    after = law_value(m, shaft, high, *_moved(m, shaft, high - t, angle, speed, acceleration))
     return (after - before) / (high - low)
+
+
+@compiled(inline=True)
+def _moved(
+    m: Model, shaft: int, ahead: float, angle: float, speed: float, acceleration: float
+) -> tuple[float, float]:
+    """Angle and speed of a shaft a short time ahead."""
+    return angle + ahead * (speed * m.scene.torque[shaft].angle_unit), speed + ahead * acceleration
 
 
 @compiled
@@ -187,7 +194,6 @@ def law_force_rate(
 ) -> tuple[float, float]:
     """Rates of `law_force` along the motion [N/tau], as `law_rate`."""
     low, high = max(t - STEP, 0.0), t + STEP
-    turn = speed * m.scene.torque[shaft].angle_unit
-    before = law_force(m, shaft, low, angle - (t - low) * turn, speed - (t - low) * acceleration)
-    after = law_force(m, shaft, high, angle + (high - t) * turn, speed + (high - t) * acceleration)
+    before = law_force(m, shaft, low, *_moved(m, shaft, low - t, angle, speed, acceleration))
+    after = law_force(m, shaft, high, *_moved(m, shaft, high - t, angle, speed, acceleration))
     return (after[0] - before[0]) / (high - low), (after[1] - before[1]) / (high - low)
