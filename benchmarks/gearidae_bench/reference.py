@@ -171,6 +171,8 @@ def scene_hash(bench: BenchScene) -> str:
     for gap in (-2.0, -1.0, 0.0, 1.0, 2.0, 3.0):
         slopes = np.zeros_like(problem.start)
         set_rates(problem.model, 0.0, _pressed(problem, gap), slopes)
+        if bench.scene.roller is not None:  # of the height, as the shipped references have it
+            slopes = np.concatenate([-slopes[:2], slopes[4:]])
         digest.update(",".join(f"{x:.6e}" for x in slopes).encode())
     return digest.hexdigest()
 
@@ -178,7 +180,7 @@ def scene_hash(bench: BenchScene) -> str:
 def _pressed(problem: Problem, gap: float) -> Floats:
     """Start state, moved so that the drive flank's gap is `gap` roughnesses."""
     y, s = problem.start.copy(), problem.model.scene
-    y[U] = gap if s.kind == ROLLER else s.half_backlash - gap
+    y[U] = s.clearance[0] - gap
     return y
 
 
@@ -193,7 +195,7 @@ def physical(problem: Problem, states: Floats) -> tuple[Floats, Floats]:
     length = float(s.length_unit)
     unit = length / problem.time_unit
     if s.kind == ROLLER:
-        return states[:, V] * unit, states[:, U] * length
+        return -states[:, V] * unit, -states[:, U] * length
     return states[:, W] * unit / float(s.gear_radius), states[:, U] * length
 
 

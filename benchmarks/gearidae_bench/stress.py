@@ -297,7 +297,7 @@ def _motion(scene: Scene, run: _Run) -> Floats:
     if scene.roller:
         height, rate, force = run.rows[:, :3].T
         values = [height / sigma, rate / speed]
-        rates = [values[1], s.gear_inverse_mass * force / s.force_unit]
+        rates = [values[1], s.pinion_inverse_mass * force / s.force_unit]
     else:
         geometry, rows = scene.geometry, run.rows
         gear, pinion = rows[:, 0] * geometry.base_radius_gear, rows[:, 1] * geometry.base_radius_pinion

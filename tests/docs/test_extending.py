@@ -175,7 +175,8 @@ from gearidae.records import EventKind
 assert "pitch_point" in EVENTS["event_kind"].attributes["flag_meanings"].split()
 mesh_marks.gap_and_rate = lambda *given: (0.0, 0.0)
 ratio, approach = 1.6, 0.7
-scene = SimpleNamespace(contact_ratio=ratio, coast_phase=2.0 * approach + 0.5, time_unit=1.0, length_unit=1.0)
+marks, coast = mesh_marks.MARKS, 2.0 * approach + 0.5
+scene = SimpleNamespace(contact_ratio=ratio, coast_phase=coast, marks=marks, time_unit=1.0, length_unit=1.0)
 extremes = SimpleNamespace(mesh_exits=0)
 m = SimpleNamespace(scene=scene, state=SimpleNamespace(turns=0.0, extremes=extremes))
 events, count = np.zeros((99, EVENT_NUMBERS)), 0

@@ -531,7 +531,7 @@ def test_friction_never_gives_power(gap, phase, v, w, coast):
     """At any state, of each flank and hub, with the directions of slip that belong to it."""
     m, start = _POWERS
     y = start.copy()
-    y[U] = float(m.scene.half_backlash) - gap / float(m.scene.length_unit)
+    y[U] = float(m.scene.clearance[0]) - gap / float(m.scene.length_unit)
     if coast:
         y[U] = -y[U]
     y[PHASE], y[V], y[W] = phase, v, w

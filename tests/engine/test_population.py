@@ -271,12 +271,12 @@ def test_forces_are_those_of_the_plain_equations():
 
 def test_a_roller_s_force_is_the_derivative_of_its_energy():
     m = make_problem(ROLLER.replace({"roller.height": 10e-9})).model
-    y, h = np.array([10.0 / 6.0, 0.0]), 1e-5
-    energies = [stored_energy(m, y + np.array([change, 0.0]))[0] for change in (-h, h)]
-    force, _, slope, *_ = mesh_forces(m, 0.0, y, False)  # in the negative height
-    assert force == pytest.approx((energies[0] - energies[1]) / (2.0 * h), rel=1e-7)
-    forces = [mesh_forces(m, 0.0, y + np.array([change, 0.0]), False).force for change in (-h, h)]
-    assert -slope == pytest.approx((forces[1] - forces[0]) / (2.0 * h), rel=1e-7)
+    y, h, along = np.array([-10.0 / 6.0, 0.0, 0.0, 0.0]), 1e-5, np.eye(4)[0]
+    energies = [stored_energy(m, y + change * along)[0] for change in (-h, h)]
+    force, _, slope, *_ = mesh_forces(m, 0.0, y, False)  # in u, the negative height
+    assert force == pytest.approx((energies[1] - energies[0]) / (2.0 * h), rel=1e-7)
+    forces = [mesh_forces(m, 0.0, y + change * along, False).force for change in (-h, h)]
+    assert slope == pytest.approx((forces[1] - forces[0]) / (2.0 * h), rel=1e-7)
 
 
 # -- checkpoints and continued runs -----------------------------------------------------------------------------------

@@ -159,7 +159,7 @@ def test_forces_of_many_pairs_scatter_about_the_mean_law(fraction, gap, kappa):
     for seed in range(20):
         problem = make_problem(scene.replace({"contact.seed": seed}))
         m, y = problem.model, problem.start
-        y[0] = m.scene.half_backlash - gap
+        y[0] = m.scene.clearance[0] - gap
         for tooth in range(19):
             for place in np.linspace(0.02, 0.98, 8) * float(m.scene.contact_ratio):
                 y[2] = tooth + place

@@ -21,7 +21,7 @@ def pressed(direction, *, gap=3.0, joined=None, fraction=0.5):
     changes = {**ON, "coating.sam_fraction": fraction, "initial.mesh_phase": 0.1}
     problem = make_problem(LOW.replace({**changes, "contact.bodies": "rigid"}))
     m, y = problem.model, problem.start.copy()
-    y[U], y[V] = m.scene.half_backlash - gap, -direction * 0.1
+    y[U], y[V] = m.scene.clearance[0] - gap, -direction * 0.1
     for pair in (0, -1):
         k = history_of(m, 0, pair)
         h = m.state.history[k]

@@ -13,6 +13,7 @@ from gearidae.engine.compiling import ELASTIC, EXPOSURES, FRICTION, POPULATION, 
 from gearidae.engine.elastic.layout import DEPTH_HIGH, ContactBounds
 from gearidae.engine.elastic.rows import scratch_size
 from gearidae.engine.events.histories import begin
+from gearidae.engine.events.mesh_marks import MARKS
 from gearidae.engine.followers.balance import open_balance
 from gearidae.engine.followers.exposures.bins import ROWS
 from gearidae.engine.model.scene_record import KEYED
@@ -21,6 +22,7 @@ from gearidae.engine.model.state import (
     GEARS,
     LOAD,
     MATERIALS,
+    MOTION,
     ROLLER,
     SCENE,
     SCHEDULES,
@@ -115,7 +117,7 @@ def _gear_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
     _set_units(s, scene)
     speed = sigma / float(s.time_unit)
     _set_geometry(s, geometry, mesh.tip_relief_radius)
-    s.half_backlash = 0.5 * mesh.backlash / sigma
+    s.clearance, s.marks = 0.5 * mesh.backlash / sigma, MARKS
     s.bins = scene.run.exposures
     s.bins_per_pitch = scene.run.exposures / float(s.contact_ratio)
     s.pitch_point = 0.5 * (float(s.coast_phase) - 0.5)
@@ -156,7 +158,7 @@ def _gear_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
     whole, phase = divmod(start.mesh_phase, 1.0)  # the solver's phase stays small: whole pitches are turns
     outside = phase - min(phase, float(s.contact_ratio))
     relief = float(0.5 * s.relief_curvature * outside**2)
-    u = float(s.half_backlash) + relief - start.gap / sigma
+    u = float(s.clearance[DRIVE]) + relief - start.gap / sigma
     w = start.gear_speed * geometry.base_radius_gear / speed
     model.state.turns, model.state.first_place = whole, start.mesh_phase
     model.state.first_lead = u + static_error(model, u, phase)[1]
@@ -176,7 +178,9 @@ def _roller_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
     s, tables = np.zeros(1, SCENE)[0], Tables()
     s.kind, s.length_unit = ROLLER, sigma
     s.time_unit, s.force_unit = sigma / abs(speed), roller.mass * speed**2 / sigma
-    s.gear_inverse_mass = s.start_radius = 1.0  # so that its contact has the length 1
+    # the gear is held: its pair stays at one place, where its contact has the length 1, of a path without length
+    s.pinion_inverse_mass = s.phase_rate = s.start_radius = 1.0
+    s.clearance, s.coast_phase = (0.0, math.inf), 0.25
     energy = 0.5 * roller.mass * roller.speed**2
     bounds = ContactBounds(roller.width, roller.radius, 1.0, 1.0, energy, energy, 0.0, roller.height / sigma)
     grid = choose_model(s, scene, bounds, nodes)
@@ -189,9 +193,9 @@ def _roller_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
     s.slots = s.histories = 1
     set_run(s, tables, scene, set(), begin.time)
     add_nodes(s, tables, grid)
-    model = _model(s, tables, [1.0, 1.0])
+    model = _model(s, tables, [1.0] * MOTION)
     model.state.slip = 1.0
-    start = [roller.height / sigma, -roller.speed * float(s.time_unit) / sigma]
+    start = [-roller.height / sigma, roller.speed * float(s.time_unit) / sigma, 0.0, 0.0]
     return _begun(model, scene, start, {})
 
 
@@ -289,8 +293,9 @@ def _add_static_error(s: Record, tables: Tables, scene: Scene) -> None:
 def _model(s: Record, tables: Tables, scale: list[float]) -> Model:
     """Put the model together, and note where its changing rows are; `scale` is that of the motion's states."""
     nodes, histories = int(s.nodes), int(s.histories)
-    s.states = len(scale) + nodes * histories
-    s.scale_at = tables.add(_scale(nodes, histories, scale))
+    s.states = MOTION + nodes * histories
+    moving = MOTION if s.gear_inverse_mass > 0.0 else 2
+    s.scale_at = tables.add(_scale(nodes, histories, scale, moving))
     rows = Tables()
     s.branches_at = rows.add(np.zeros(2 * MATERIALS * int(s.branch_length) * histories))
     s.node_rows_at = rows.add(np.zeros(int(s.node_row_length) * histories))
@@ -306,13 +311,13 @@ def _model(s: Record, tables: Tables, scale: list[float]) -> Model:
     return blank_model(s, tables.whole(), rows.size)
 
 
-def _scale(nodes: int, histories: int, motion: list[float]) -> Floats:
+def _scale(nodes: int, histories: int, motion: list[float], moving: int) -> Floats:
     """What an error of 1 means for each state.
 
-    The solver's norm is a mean over all states. Factors make it that of the motion alone, however many
-    nodes there are, with the nodes of one pair counting as one more state.
+    The solver's norm is a mean over all states. Factors make it that of the motion alone, of the states that are
+    `moving`, however many nodes there are, with the nodes of one pair counting as one more state.
     """
-    share = math.sqrt(len(motion) / (len(motion) + nodes * histories))
+    share = math.sqrt(moving / (len(motion) + nodes * histories))
     return np.concatenate(
         [share * np.array(motion), np.full(nodes * histories, share * math.sqrt(max(nodes, 1)))]
     )
@@ -335,7 +340,8 @@ def _begun(m: Model, scene: Scene, motion: list[float], skipped: dict[str, int])
         settle_nodes(m, 0.0, y)
     begin(m, 0.0, y)
     s.follow.balance, s.follow.extremes, s.follow.exposures = scene.run.balance, 1, s.bins > 0
-    s.follow.passages = int(scene.run.passages and s.kind == GEARS)
+    s.follow.gear = int(s.gear_inverse_mass > 0.0)
+    s.follow.passages = int(scene.run.passages and s.follow.gear)
     s.follow.friction = int(scene.run.balance and s.friction.rubs != 0)
     if s.follow.balance != 0:
         open_balance(m, y)
