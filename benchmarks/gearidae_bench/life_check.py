@@ -22,6 +22,7 @@ import xarray as xr
 
 import gearidae as gd
 from gearidae import engine
+from gearidae.scene import require_gears
 from gearidae.studies.life_coverage import coverage_of
 from gearidae.studies.life_window import Cycles, gained, window_scene, with_exposures
 
@@ -99,7 +100,7 @@ def brute_force(scene: gd.Scene, law: gd.wear.LossLaw, most: int, resolved: str)
     -------
     BruteForce
     """
-    assert scene.gears is not None
+    scene = require_gears(scene)
     teeth = scene.gears.pinion_teeth
     coverage = coverage_of(scene, resolved, PLACES)
     window = window_scene(scene, Cycles(0, 1), PLACES)
@@ -166,7 +167,7 @@ def compared(
     -------
     Comparison
     """
-    coverage = coverage_of(scene, resolved, PLACES)
+    coverage = coverage_of(require_gears(scene), resolved, PLACES)
     uniform = resolved == "uniform"
     ours = found.coverage.values[:, :, None, None] if uniform else found.coverage_by_place.values
     sticking = (float(found.attrs.get("passages_to_sticking", math.nan)), float(brute.passages[-1]))

@@ -10,7 +10,7 @@ import xarray as xr
 
 from gearidae.archive.select import is_roller, run_scene, runs
 from gearidae.mesh.pair_contact import pair_contact
-from gearidae.scene import Scene
+from gearidae.scene import GearScene, require_gears
 
 
 def warn_of_aliasing(data: xr.Dataset | xr.DataArray, rate: float) -> None:
@@ -27,7 +27,7 @@ def warn_of_aliasing(data: xr.Dataset | xr.DataArray, rate: float) -> None:
         return
     if is_roller(data):
         return
-    frequency = max(_frequency(run_scene(run), run) for _, run in runs(data))
+    frequency = max(_frequency(require_gears(run_scene(run)), run) for _, run in runs(data))
     if rate < 2.0 * frequency:
         warnings.warn(
             f"sampling at {rate:.4g} Hz is below twice the frequency of the loaded contact, {frequency:.4g} Hz: the "
@@ -36,9 +36,8 @@ def warn_of_aliasing(data: xr.Dataset | xr.DataArray, rate: float) -> None:
         )
 
 
-def _frequency(scene: Scene, run: xr.Dataset) -> float:
+def _frequency(scene: GearScene, run: xr.Dataset) -> float:
     """Frequency of one pair about the gap at which it carries the mean drive torque [Hz]; 0 if it carries none."""
-    assert scene.gears is not None
     contact, geometry = pair_contact(scene), scene.geometry
     pinion, gear = geometry.base_radius_pinion, geometry.base_radius_gear
     torque = float(np.nan_to_num(np.abs(run["drive_torque"]).mean()))

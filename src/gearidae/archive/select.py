@@ -16,7 +16,7 @@ from gearidae.archive.rows import LABELS, kinds_in, own_rows, row_places
 from gearidae.archive.variables import EXTREMES, SAMPLES
 from gearidae.errors import SceneError
 from gearidae.records import sampled_columns
-from gearidae.scene import Scene
+from gearidae.scene import GearScene, Scene
 
 
 def scene_of(ds: xr.Dataset) -> dict[str, Any]:
@@ -166,7 +166,7 @@ def _numbers_in(table: Mapping[str, Any], above: str) -> Iterator[tuple[str, flo
             yield f"{above}{name}", value
 
 
-def first_travel(run: xr.Dataset, scene: Scene) -> float:
+def first_travel(run: xr.Dataset, scene: GearScene) -> float:
     """Travel of the gear along the line of action where its angle is zero [m].
 
     Parameters
@@ -178,7 +178,6 @@ def first_travel(run: xr.Dataset, scene: Scene) -> float:
     """
     if run["gear_angle"].attrs.get("comment") != SAMPLES["gear_angle"].comment:
         return 0.0
-    assert scene.initial is not None
     return scene.initial.mesh_phase * scene.geometry.base_pitch
 
 

@@ -18,7 +18,7 @@ from gearidae.drawing.style import NEGATIVE, POSITIVE, runs_of, scale_for, tidy
 from gearidae.plot.asperities import COATING, FLANKS, close_up, joined_asperities
 from gearidae.plot.tooth_shape import GearPicture, contact_points, mesh_picture
 from gearidae.records import Flank
-from gearidae.scene import Scene
+from gearidae.scene import GearScene, require_gears
 from gearidae.studies.tooth_states import ContactState, MeshState, ToothContact
 
 STATE_WORDS = {
@@ -88,10 +88,9 @@ def mesh_states(ds: xr.Dataset, times: ArrayLike) -> list[MeshState]:
     return tooth_contacts(ds, times)
 
 
-def pairs_at_most(scene: Scene) -> int:
+def pairs_at_most(scene: GearScene) -> int:
     """Return how many pairs of one flank can be near each other at a time: one to three."""
     geometry = scene.geometry
-    assert scene.mesh is not None
     end = math.sqrt(2.0 * scene.mesh.tip_relief_radius * _ROUNDED * scene.surface.roughness)
     return min(math.ceil((geometry.path_length + 2.0 * end) / geometry.base_pitch), 3)
 
@@ -118,7 +117,7 @@ class TeethView:
     """
 
     def __init__(self, ds: xr.Dataset, states: Sequence[MeshState]) -> None:
-        self._scene = run_scene(ds)
+        self._scene = require_gears(run_scene(ds))
         self._picture = mesh_picture(self._scene)
         forces = [abs(one.force) for state in states for one in state.contacts if math.isfinite(one.force)]
         self._largest = max(forces, default=0.0)

@@ -19,7 +19,7 @@ from gearidae.plot.asperities import flank_asperities, half_width, joined_asperi
 from gearidae.plot.teeth_view import STATE_WORDS, mesh_states, nearest_pairs, pairs_at_most
 from gearidae.plot.tooth_shape import ToothedWheel, mesh_picture
 from gearidae.records import sampled_columns
-from gearidae.scene import MATERIAL_NAMES, Scene
+from gearidae.scene import MATERIAL_NAMES, GearScene, require_gears
 
 if TYPE_CHECKING:
     from gearidae.records import Flank
@@ -92,7 +92,7 @@ def pack_teeth(ds: xr.Dataset, most_states: int = MOST_STATES) -> dict[str, Any]
 
 
 def _pack_run(run: xr.Dataset, most: int) -> dict[str, Any]:
-    scene = run_scene(run)
+    scene = require_gears(run_scene(run))
     picture, module = mesh_picture(scene), scene.geometry.module
     samples = motion_samples(run)
     # samples themselves and not times between, so that what is shown is what was recorded
@@ -138,7 +138,7 @@ class _Asperities:
         Places and heights of joined asperities of a population, of all pairs one after the other.
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: GearScene) -> None:
         self.scene = scene
         self.rows: dict[str, int] = {}
         self.joined: list[float] = []

@@ -15,7 +15,7 @@ from gearidae.scene.joints import Joint, has_pin, joints
 from gearidae.torques import torque_law
 
 if TYPE_CHECKING:
-    from gearidae.scene import Scene
+    from gearidae.scene import GearScene, Scene
 
 
 _ANGLES: Final = 360
@@ -58,9 +58,8 @@ def flank_loss(scene: Scene, load: float) -> float:
     return loss_fraction(scene.geometry, coefficient) if coefficient != 0.0 else 0.0
 
 
-def hub_radii(scene: Scene) -> tuple[float, float]:
+def hub_radii(scene: GearScene) -> tuple[float, float]:
     """Radii of the hubs of pinion and gear [m]."""
-    assert scene.gears is not None
     return scene.gears.pinion_hub_radius, scene.gears.gear_hub_radius
 
 
@@ -70,13 +69,13 @@ def hub_constants(scene: Scene) -> tuple[float, float]:
     return taken.get("pinion hub", 0.0), taken.get("gear hub", 0.0)
 
 
-def joint_loads(scene: Scene, force: float) -> list[tuple[Joint, float]]:
+def joint_loads(scene: GearScene, force: float) -> list[tuple[Joint, float]]:
     """List the joints with their mean loads over a turn [N], at a constant force of the teeth [N].
 
     The force of a pin is that of the torque law at the end of the run.
     """
     pins = _pin_forces(scene)
-    line = scene.geometry.pressure_angle + (scene.drive.orientation if scene.drive is not None else 0.0)
+    line = scene.geometry.pressure_angle + scene.drive.orientation
     on_pinion = pins - force * np.array([math.sin(line), math.cos(line)])
     loads = {
         "pinion hub": float(np.hypot(*on_pinion.T).mean()),
@@ -86,12 +85,11 @@ def joint_loads(scene: Scene, force: float) -> list[tuple[Joint, float]]:
     return [(joint, loads[joint.name]) for joint in joints(scene)]
 
 
-def _pin_forces(scene: Scene) -> Floats:
+def _pin_forces(scene: GearScene) -> Floats:
     """Forces of the drive's law on the pinion at angles all around, shape (n, 2) [N]; zero for a couple."""
     angles = np.linspace(0.0, 2.0 * math.pi, _ANGLES, endpoint=False)
     if not has_pin(scene):
         return np.zeros((1, 2))
-    assert scene.drive is not None
     assert scene.drive.law is not None
     law, numbers = torque_law(scene.drive.law.name), np.array(scene.drive.law.numbers())
     function, end = getattr(law.function, "py_func", law.function), scene.run.duration
@@ -102,7 +100,7 @@ def _pin_forces(scene: Scene) -> Floats:
     return np.array(values, np.float64)[:, 1:]
 
 
-def transmitted_share(scene: Scene, load: float) -> float:
+def transmitted_share(scene: GearScene, load: float) -> float:
     """Share of the drive's work that friction leaves, at a constant force of the teeth.
 
     Returns
@@ -111,7 +109,6 @@ def transmitted_share(scene: Scene, load: float) -> float:
         What the flanks leave times what the hubs leave, 0 or more; flanks of the law ``shear`` count as without
         friction where no gap carries the force.
     """
-    assert scene.gears is not None
     loss = flank_loss(scene, load)
     left = 1.0 if math.isnan(loss) else max(1.0 - loss, 0.0)
     return left * hub_share(scene.geometry, scene.gears.hub_friction, hub_radii(scene))

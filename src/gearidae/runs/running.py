@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from gearidae import engine
     from gearidae.progress import RunReport
 
+SomeScene = TypeVar("SomeScene", bound=Scene)
+
 _ADVICE = "try another rtol (run.rtol); the samples and events up to there are kept"
 _LEAST_MEMORY = 1.25e9
 """Addresses [bytes] that the solver's libraries and threads take; in memory there is a fourth of it."""
@@ -29,13 +31,13 @@ _STATE = ("gear_speed", "transmission_error", "drive_gap", "height", "speed", "f
 
 
 def prepare(
-    scene: Scene,
+    scene: SomeScene,
     *,
     rtol: float | None,
     t_end: float | None = None,
     samples: int | str | None,
     backend: str = "auto",
-) -> Scene:
+) -> SomeScene:
     """Put the settings of one call into the scene, so that the scene says exactly what was run.
 
     Parameters

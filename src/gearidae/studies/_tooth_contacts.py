@@ -24,7 +24,7 @@ from gearidae.engine.setup.build import make_problem
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import curvature_radii
 from gearidae.records import Flank
-from gearidae.scene import Scene
+from gearidae.scene import GearScene, require_gears
 from gearidae.scene.carried import numbers_of
 from gearidae.scene.coating import interface_shares
 from gearidae.scene.coating_table import fraction_at, met_teeth
@@ -102,7 +102,8 @@ def tooth_contacts(ds: xr.Dataset, times: ArrayLike) -> list[MeshState]:
     time; the gap there is interpolated with the recorded rates.
     """
     run = _one_run(ds)
-    scene, limits = run_scene(run), _limits(run_scene(run))
+    scene = require_gears(run_scene(run))
+    limits = _limits(scene)
     wanted = _nearest(run, np.atleast_1d(numbers_of(times, "s")))
     order = np.argsort(wanted, kind="stable")
     states: dict[int, MeshState] = {}
@@ -143,7 +144,7 @@ def _nearest(run: xr.Dataset, wanted: Floats) -> Integers:
 
 
 def _stretches(
-    run: xr.Dataset, scene: Scene, at: Integers, reach: float
+    run: xr.Dataset, scene: GearScene, at: Integers, reach: float
 ) -> list[tuple[tuple[slice, slice], slice]]:
     """Divide samples, in increasing order, into stretches that begin before any of their pairs came near.
 
@@ -190,7 +191,7 @@ def _look_back(angle: xr.DataArray, sample: int, travel: float) -> int:
 
 
 def _states(
-    record: ToothRecord, scene: Scene, limits: _Limits, wanted: Integers, real: JoinedAsperities | None
+    record: ToothRecord, scene: GearScene, limits: _Limits, wanted: Integers, real: JoinedAsperities | None
 ) -> list[MeshState]:
     """Return the states at some samples of a stretch, counted from its first."""
     contacts: list[list[ToothContact]] = [[] for _ in wanted]
@@ -225,7 +226,7 @@ def _states(
     return states
 
 
-def _limits(scene: Scene) -> _Limits:
+def _limits(scene: GearScene) -> _Limits:
     """Take from the engine what it takes for contact."""
     constants, sigma = make_problem(scene).model.scene, scene.surface.roughness
     return _Limits(
@@ -236,7 +237,7 @@ def _limits(scene: Scene) -> _Limits:
     )
 
 
-def _near(record: ToothRecord, scene: Scene, limits: _Limits, wanted: Integers) -> Iterator[_Near]:
+def _near(record: ToothRecord, scene: GearScene, limits: _Limits, wanted: Integers) -> Iterator[_Near]:
     """Find every pair that is on its path, or near enough for a force, at one of the wanted samples."""
     order = np.argsort(wanted, kind="stable")
     at = wanted[order]
@@ -260,7 +261,9 @@ def _near(record: ToothRecord, scene: Scene, limits: _Limits, wanted: Integers) 
             yield _Near(pair, flank, order[counts], here, place, curvature_radii(geometry, place)[2], gap)
 
 
-def _followed(record: ToothRecord, scene: Scene, limits: _Limits, wanted: Integers) -> Iterator[_Followed]:
+def _followed(
+    record: ToothRecord, scene: GearScene, limits: _Limits, wanted: Integers
+) -> Iterator[_Followed]:
     """Follow every pair that counts at one of the wanted samples."""
     laws = material_laws(scene)
     for near in _near(record, scene, limits, wanted):
@@ -276,7 +279,7 @@ def _followed(record: ToothRecord, scene: Scene, limits: _Limits, wanted: Intege
         yield _Followed(near, joined, force)
 
 
-def _attraction(scene: Scene, near: _Near) -> Floats:
+def _attraction(scene: GearScene, near: _Near) -> Floats:
     """Attraction of a pair across its gap [N], apart from its asperities."""
     total = np.zeros_like(near.gap)
     if scene.attracts:
@@ -317,12 +320,12 @@ def _real_contact(
     )
 
 
-def _stretch_limit(law: MaterialLaw, scene: Scene) -> float:
+def _stretch_limit(law: MaterialLaw, scene: GearScene) -> float:
     """How far the asperities of a part stretch [m]; 0 where that makes no difference to the force."""
     return float(law.table[H_STRETCH]) * scene.surface.roughness
 
 
-def _share_ratios(scene: Scene, flank: Flank, pair: int, place: Floats) -> dict[str, Floats]:
+def _share_ratios(scene: GearScene, flank: Flank, pair: int, place: Floats) -> dict[str, Floats]:
     """Shares of the materials of a pair over their means; ones where they do not change with tooth and place."""
     coating = scene.coating
     means = {one.name: one.share for one in scene.materials() if one.share > 0.0}
@@ -336,7 +339,7 @@ def _share_ratios(scene: Scene, flank: Flank, pair: int, place: Floats) -> dict[
 
 
 def _force(
-    scene: Scene,
+    scene: GearScene,
     laws: dict[str, MaterialLaw],
     gap: Floats,
     joined: dict[str, Floats],

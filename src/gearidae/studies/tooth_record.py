@@ -25,7 +25,7 @@ from gearidae.contact.history import joined_height
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import separation
 from gearidae.records import EventKind, Flank
-from gearidae.scene import Scene
+from gearidae.scene import GearScene
 
 Integers = NDArray[np.int64]
 
@@ -50,7 +50,7 @@ class ToothRecord:
         If a sample is missing.
     """
 
-    def __init__(self, run: xr.Dataset, scene: Scene, samples: slice, events: slice) -> None:
+    def __init__(self, run: xr.Dataset, scene: GearScene, samples: slice, events: slice) -> None:
         def read(name: str, cut: slice = samples) -> Floats:
             values: Floats = run[name].variable[cut].values
             if cut is samples and not (present := np.isfinite(values)).all():
@@ -60,7 +60,6 @@ class ToothRecord:
                 )
             return values
 
-        assert scene.mesh is not None
         self.geometry = scene.geometry
         self._half_backlash = 0.5 * scene.mesh.backlash
         self._relief_radius = scene.mesh.tip_relief_radius
@@ -138,9 +137,8 @@ class ToothRecord:
         travel, u = (motion.at(times) for motion in self._motions)
         return times, self.gap(flank, self.place(flank, pair, travel), u)
 
-    def _error_slope(self, scene: Scene) -> Floats:
+    def _error_slope(self, scene: GearScene) -> Floats:
         """Slope of the static transmission error in the pinion's angle over R1, at the samples."""
-        assert scene.mesh is not None
         radius = self.geometry.base_radius_pinion
         angle = (self.u + self.travel) / radius
         slope = np.zeros_like(angle)

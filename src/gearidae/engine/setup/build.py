@@ -47,7 +47,7 @@ from gearidae.engine.torques.schedule import (
     segment_ends,
 )
 from gearidae.mesh.involute import Geometry
-from gearidae.scene import MATERIAL_NAMES, Drive, Load, Scene
+from gearidae.scene import MATERIAL_NAMES, Drive, GearScene, Load, RollerScene, Scene, require_gears
 from gearidae.scene.combinations import may_deflect
 from gearidae.scene.limits import check_reach, pairs_within_reach
 from gearidae.scene.sampled import columns_of
@@ -85,8 +85,10 @@ def make_problem(
         If the scene is beyond what the engine can do.
     """
     make_part_ready(SOLVER)
-    build = _gear_problem if scene.roller is None else _roller_problem
-    problem = build(scene, nodes, start)
+    if isinstance(scene, RollerScene):
+        problem = _roller_problem(scene, nodes, start)
+    else:
+        problem = _gear_problem(require_gears(scene), nodes, start)
     problem.columns = columns or problem.columns
     problem.method = scene.run.method
     problem.digest = digest or scene_digest(json.dumps(scene.to_dict(), sort_keys=True, default=str))
@@ -105,13 +107,8 @@ def make_problem(
     return problem
 
 
-def _gear_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
+def _gear_problem(scene: GearScene, nodes: Nodes | None, begin: Start) -> Problem:
     gears, mesh, start, drive, load = scene.gears, scene.mesh, scene.initial, scene.drive, scene.load
-    assert gears
-    assert mesh
-    assert start
-    assert drive
-    assert load
     geometry, sigma = scene.geometry, scene.surface.roughness
     s, tables = np.zeros(1, SCENE)[0], Tables()
     _set_units(s, scene)
@@ -139,7 +136,7 @@ def _gear_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
         add_contact(s, tables, scene, gears.face_width, unit_length, widest)
     add_attraction(s, tables, scene, gears.face_width, unit_length, widest)
     s.reach = math.sqrt(2.0 * (float(s.cutoff) - GAP_LOW) / float(s.relief_curvature))
-    add_friction(s, scene, gears, geometry)
+    add_friction(s, scene)
     _set_slots(s, scene)
     add_torques(s, tables, scene, begin.time)
     set_stop(s, scene, start.mesh_phase if begin.place is None else begin.place)
@@ -170,9 +167,8 @@ def _gear_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
     return _begun(model, scene, [u, 0.0, phase, w], skipped)
 
 
-def _roller_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
+def _roller_problem(scene: RollerScene, nodes: Nodes | None, begin: Start) -> Problem:
     roller = scene.roller
-    assert roller is not None
     sigma = scene.surface.roughness
     speed = roller.speed if roller.speed != 0.0 else 1e3 * sigma / scene.run.duration
     s, tables = np.zeros(1, SCENE)[0], Tables()
@@ -202,10 +198,9 @@ def _roller_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
 # -- constants -------------------------------------------------------------------------------------------------------
 
 
-def _set_units(s: Record, scene: Scene) -> None:
+def _set_units(s: Record, scene: GearScene) -> None:
     """Set the units of a gear pair and its inverse masses."""
     gears, geometry = scene.gears, scene.geometry
-    assert gears
     pinion_mass = gears.pinion_inertia / geometry.base_radius_pinion**2
     gear_mass = gears.gear_inertia / geometry.base_radius_gear**2
     mass = 1.0 / (1.0 / pinion_mass + 1.0 / gear_mass)
@@ -244,12 +239,9 @@ def _set_geometry(s: Record, geometry: Geometry, tip_relief_radius: float) -> No
     s.sum_curvature = pitch / (geometry.tangent_pinion + geometry.tangent_gear)
 
 
-def _gear_bounds(s: Record, scene: Scene) -> ContactBounds:
+def _gear_bounds(s: Record, scene: GearScene) -> ContactBounds:
     """Where the contacts of a gear pair take place."""
     gears, mesh, start = scene.gears, scene.mesh, scene.initial
-    assert gears
-    assert mesh
-    assert start
     # the radius is largest where both radii of curvature are the same, if that is on the path
     ratio = float(s.contact_ratio)
     equal = 0.5 / float(s.sum_curvature) - float(s.start_radius)
@@ -263,7 +255,7 @@ def _gear_bounds(s: Record, scene: Scene) -> ContactBounds:
     return ContactBounds(gears.face_width, pitch, min(lengths), max(lengths), energy, 0.0, force, nearest)
 
 
-def _set_slots(s: Record, scene: Scene) -> None:
+def _set_slots(s: Record, scene: GearScene) -> None:
     """Set how many histories each flank keeps: at least as many as pairs can be within reach."""
     check_reach(scene, float(s.cutoff))
     slots = 2 ** math.ceil(math.log2(pairs_within_reach(scene, float(s.cutoff))))
@@ -273,9 +265,8 @@ def _set_slots(s: Record, scene: Scene) -> None:
 # -- tables ----------------------------------------------------------------------------------------------------------
 
 
-def _add_static_error(s: Record, tables: Tables, scene: Scene) -> None:
+def _add_static_error(s: Record, tables: Tables, scene: GearScene) -> None:
     """Lay out the harmonics of the static transmission error."""
-    assert scene.mesh
     errors = scene.mesh.static_error
     numbers = [x for h in errors for x in (h.order, h.amplitude / float(s.length_unit), h.phase)]
     s.error_count, s.error_at = len(errors), tables.add(numbers)

@@ -9,7 +9,7 @@ from gearidae.engine.model.state import Record
 from gearidae.engine.setup.build_contact import add_coverage, parts_of
 from gearidae.engine.setup.tables import Tables
 from gearidae.errors import SceneError
-from gearidae.scene import Scene
+from gearidae.scene import GearScene, Scene
 from gearidae.scene.limits import MOST_PAIRS, pairs_within_reach
 
 NEGLIGIBLE: Final = 1e-6
@@ -44,13 +44,13 @@ def add_attraction(
         add_coverage(s, tables, scene)
     sigma, cutoff = scene.surface.roughness, float(s.cutoff)
     s.attracts, s.attraction_floor = 1, FLOOR / sigma
-    least = NEGLIGIBLE if scene.roller is None else NEGLIGIBLE_ALONE
+    least = NEGLIGIBLE if isinstance(scene, GearScene) else NEGLIGIBLE_ALONE
     for own, (surface, share, offset, _) in zip(s.material, parts_of(scene), strict=False):
         force = surface.hamaker * width * unit_length / (16.0 * sigma**3)
         own.gap_offset, own.attraction = offset / sigma, share * force / float(s.force_unit)
         cutoff = max(cutoff, (float(own.attraction) * widest / least) ** 0.4 - float(own.gap_offset))
     s.cutoff = cutoff
-    if scene.roller is None and pairs_within_reach(scene, cutoff) > MOST_PAIRS:
+    if isinstance(scene, GearScene) and pairs_within_reach(scene, cutoff) > MOST_PAIRS:
         key = "surface.hamaker" if scene.surface.hamaker > 0.0 else "coating.hamaker"
         raise SceneError(
             key,
