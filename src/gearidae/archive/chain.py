@@ -69,9 +69,10 @@ def chained(parts: Sequence[xr.Dataset]) -> xr.Dataset:
         coords={name: each for name, each in variables.items() if name in last.coords},
         attrs=last.attrs,
     )
-    ds.attrs.pop("start_time", None)
-    if "start_time" in singles[0].attrs:
-        ds.attrs["start_time"] = singles[0].attrs["start_time"]
+    for name in ("start_time", "parent"):
+        ds.attrs.pop(name, None)
+        if name in singles[0].attrs:
+            ds.attrs[name] = singles[0].attrs[name]
     for name in _SUMS:
         ds.attrs[name] = sum(part.attrs[name] for part in singles)
     for name in ("backend", "method"):
@@ -162,7 +163,7 @@ def _spacing(run: xr.Dataset) -> float:
 
 
 def _links(run: xr.Dataset) -> Iterator[dict[str, Any]]:
-    """Where a run begins and ends, with its scene; of a chain, its runs."""
+    """Where a run begins and ends, with its scene and the run that it goes on from; of a chain, its runs."""
     if "chain" in run.attrs:
         yield from json.loads(run.attrs["chain"])
         return
@@ -171,4 +172,5 @@ def _links(run: xr.Dataset) -> Iterator[dict[str, Any]]:
         "start": None if math.isinf(start) else start,
         "end": end,
         "scene": json.loads(run.attrs["scene"]),
+        **{name: run.attrs[name] for name in ("started_from", "parent") if name in run.attrs},
     }

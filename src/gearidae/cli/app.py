@@ -175,11 +175,17 @@ def report(
     *,
     output: Output = None,
     overwrite: Overwrite = False,
+    teeth: Annotated[
+        bool | None,
+        Parameter(
+            help="Show the teeth in mesh, for which the scene runs again. Default: where that takes less than a minute."
+        ),
+    ] = None,
 ) -> int:
     """Write one self-contained HTML page about an archive: outcome, time series, pictures, events, scene."""
     from gearidae.cli.report import report_archive
 
-    return report_archive(archive, output, overwrite=overwrite)
+    return report_archive(archive, output, overwrite=overwrite, teeth=teeth)
 
 
 @app.command

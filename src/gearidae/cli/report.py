@@ -10,7 +10,7 @@ from gearidae.cli.codes import DONE
 from gearidae.cli.output import say
 
 
-def report_archive(archive: Path, output: Path | None, *, overwrite: bool) -> int:
+def report_archive(archive: Path, output: Path | None, *, overwrite: bool, teeth: bool | None) -> int:
     """Write the report of an archive.
 
     Parameters
@@ -21,6 +21,8 @@ def report_archive(archive: Path, output: Path | None, *, overwrite: bool) -> in
         HTML file to write; None for the archive's name with ``.html``.
     overwrite : bool
         Whether the page may replace a file.
+    teeth : bool or None
+        Whether to show the teeth in mesh; None: unless it takes long.
 
     Returns
     -------
@@ -41,6 +43,7 @@ def report_archive(archive: Path, output: Path | None, *, overwrite: bool) -> in
     ds, _ = open_product(archive)
     if ATTRIBUTE not in ds.attrs:
         ds = with_validity(ds, gd.Scene.from_dict(scene_of(ds)))
-    target = write_report(ds, output or default_output(str(archive), ".html"), overwrite=overwrite)
+    target = output or default_output(str(archive), ".html")
+    target = write_report(ds, target, overwrite=overwrite, teeth=teeth)
     say(f"Report: {target}")
     return DONE

@@ -3,7 +3,7 @@
 The model puts the roughness of both flanks on one, and knows of its asperities density, tip radius and the
 distribution of their heights; the single asperities drawn are a sample of these. Which of a sample would be pressed,
 stretched or free follows from the gap and the joined height. A population's asperities are drawn as they are, all that
-stand side by side across the face width; the archive determines which of them are joined.
+stand side by side across the face width, with marks on those that are joined.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 
 from gearidae.arrays import Floats
 from gearidae.drawing.style import NEGATIVE, POSITIVE
+from gearidae.populations.met_flank import MetFlank, contact_arc, met_flank
 from gearidae.records import Flank
+from gearidae.records.tooth_states import ToothContact
 from gearidae.scene import MATERIAL_NAMES, Scene
-from gearidae.studies.joined_asperities import MetFlank, contact_arc, met_flank
-from gearidae.studies.tooth_states import ToothContact
 
 FLANKS = "#d3e5f3", "#deb968"
 """Colours of pinion and gear, one lighter than the other in grey."""
@@ -91,11 +91,11 @@ def joined_asperities(scene: Scene, contact: ToothContact) -> float:
     -------
     float
         ``N L sqrt(2 R sigma)`` times the integral of the share of heights above ``zeta + s^2`` over s; far below one
-        where the surfaces hardly touch. NaN where the record does not tell.
+        where the surfaces hardly touch. NaN where the bodies deflect.
     """
     assert scene.gears is not None
     if scene.contact.is_discrete:
-        return math.nan if contact.asperities is None else float(len(contact.asperities))
+        return float(len(contact.asperities or ()))
     sigma = scene.surface.roughness
     s, step = np.linspace(-6.0, 6.0, 1201, retstep=True)
     materials = {one.name: one for one in scene.materials()}

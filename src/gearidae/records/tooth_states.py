@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import IntEnum
 
-from gearidae.records import Flank
+from gearidae.records.events import Flank
 
 
 class ContactState(IntEnum):
-    """State of the asperities in a pair of teeth."""
+    """State of the asperities in a pair of teeth; of elastic bodies, of those in the middle of the contact."""
 
-    UNRECOVERABLE = -1
-    """Not recoverable from the record."""
     OPEN = 0
     """Too far apart to count as contact."""
     LOADING = 1
@@ -40,14 +38,15 @@ class ToothContact:
     gap : float
         Gap along the line of action [m].
     force : float
-        Positive pushes apart [N]; NaN where it is not recoverable from the record.
+        Force along the line of action by all laws of the scene [N]; positive pushes apart.
     joined : dict of str to float
-        By ``bare`` and ``coated``, as far as there are such parts: height above which asperities are joined [m].
+        By ``bare``, ``coated`` and ``mixed``, as far as there are such parts: height above which asperities are joined
+        [m]; NaN where the bodies deflect, so that each place along the contact has a height of its own. Empty for a
+        population.
     states : dict of str to ContactState
-        State of either part.
+        State of each part.
     asperities : tuple of int, optional
-        Joined asperities of a population, by their numbers on the pinion's flank; None of other models, and where they
-        are not recoverable from the record.
+        Joined asperities of a population, by their numbers on the pinion's flank; None of other models.
     """
 
     pair: int
@@ -81,11 +80,7 @@ class MeshState:
     gear_speed : float
         [rad/s].
     mesh_force : float
-        Recorded force along the line of action, of all pairs [N].
-    mismatch : float
-        By how much the forces found for the pairs miss the recorded one [N].
-    recovered : bool
-        Whether that is small enough, so that forces and states are given.
+        Force along the line of action, of all pairs and the damping of the mesh [N].
     contacts : tuple of ToothContact
         Pairs on the path of contact of either flank, and those beside it that are near enough for a force.
     """
@@ -95,6 +90,4 @@ class MeshState:
     transmission_error: float
     gear_speed: float
     mesh_force: float
-    mismatch: float
-    recovered: bool
     contacts: tuple[ToothContact, ...]
