@@ -11,10 +11,9 @@ import numpy as np
 import xarray as xr
 
 from gearidae.archive.attributes import readable_scene, wrong_attribute
-from gearidae.archive.commits import RECORDS, Commit, check_bytes, intact
+from gearidae.archive.commits import RECORDS, Commit, check_bytes
 from gearidae.archive.definition import CHUNK, chunked
 from gearidae.archive.disk import disk_errors
-from gearidae.archive.growing import is_growing, trimmed
 from gearidae.archive.integrity import CheckedStore
 from gearidae.archive.keep import kept_in
 from gearidae.archive.library import await_lock, check_size, uninterrupted
@@ -24,6 +23,7 @@ from gearidae.archive.provenance import SCHEMA_VERSION
 from gearidae.archive.rows import kinds_in, needed
 from gearidae.archive.target import as_path, whole_file
 from gearidae.archive.time_index import LARGEST_IN_MEMORY, in_memory, with_times
+from gearidae.archive.unfinished import intact, is_growing, trimmed
 from gearidae.errors import SceneError
 from gearidae.records import GEAR_SAMPLES, ROLLER_SAMPLES, sampled_columns
 from gearidae.scene import Scene
