@@ -18,8 +18,8 @@ import xarray as xr
 
 import gearidae as gd
 from gearidae.archive import library, save
-from gearidae.archive.integrity import CheckedStore
 from gearidae.archive.library import LIBRARY, loaded, uninterrupted
+from gearidae.archive.netcdf import CheckedStore
 from gearidae.cli import main
 
 

@@ -13,9 +13,9 @@ import gearidae as gd
 from gearidae import engine
 from gearidae.archive import run_summary as account_module
 from gearidae.archive.end_state import end_state_of
-from gearidae.archive.extremes import extremes_of
 from gearidae.archive.run_summary import account
 from gearidae.archive.summary_rows import summary_rows
+from gearidae.archive.totals import extremes_of
 from gearidae.archive.variables import ENERGY_BALANCE
 from gearidae.cli import main
 from gearidae.records.standing import Holding

@@ -15,7 +15,7 @@ import pytest
 from scipy import special
 
 import gearidae as gd
-from gearidae.archive.energy import balance_of
+from gearidae.archive.totals import balance_of
 from gearidae.asperities import law_names
 from gearidae.contact import asperity_of, register, rough_pressure, unregister
 

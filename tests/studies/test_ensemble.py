@@ -15,7 +15,7 @@ from gearidae.analysis.verdict.codes import VerdictCode, sticking, verdict_codes
 from gearidae.analysis.verdict.judge import verdict_of
 from gearidae.archive import to_dataset
 from gearidae.cli import main
-from gearidae.cli.request import Request
+from gearidae.cli.study_commands import Request
 from gearidae.errors import Interrupted
 from gearidae.records import EventKind
 from gearidae.runs import batch

@@ -12,7 +12,7 @@ from gearidae.archive.variables import EVENTS
 from gearidae.cli.case import read_scene
 from gearidae.cli.codes import DONE
 from gearidae.cli.output import say, show_rows
-from gearidae.cli.validity_table import show_validity
+from gearidae.cli.tables import show_validity
 from gearidae.progress import in_words
 from gearidae.runs.plausibility import doubts
 from gearidae.runs.run_time import run_time

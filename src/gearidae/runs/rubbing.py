@@ -1,17 +1,19 @@
-"""What friction of the flanks and the joints takes, estimated in closed form for a scene."""
+"""What friction of the flanks and the joints takes, estimated in closed form for a scene, and where it locks them."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from gearidae.arrays import Floats
-from gearidae.mesh.friction import hub_share, loss_fraction
+from gearidae.mesh.friction import hub_share, locking_coefficients, loss_fraction
 from gearidae.mesh.pair_contact import pair_contact
 from gearidae.scene.friction import friction_values, has_flank_friction
 from gearidae.scene.joints import Joint, has_pin, joints
+from gearidae.scene.validity_row import ValidityRow
 from gearidae.torques import torque_law
 
 if TYPE_CHECKING:
@@ -115,3 +117,34 @@ def transmitted_share(scene: Scene, load: float) -> float:
     loss = flank_loss(scene, load)
     left = 1.0 if math.isnan(loss) else max(1.0 - loss, 0.0)
     return left * hub_share(scene.geometry, scene.gears.hub_friction, hub_radii(scene))
+
+
+_NEAR_LOCKING: Final = 0.5
+"""Share of the coefficient that locks teeth or hubs, up to which friction changes forces by less than double."""
+
+
+def locking_rows(scene: Scene) -> Iterator[ValidityRow]:
+    """Compare coefficients of friction with those that lock the teeth or a hub; nothing where they are zero."""
+    assert scene.gears is not None
+    gears, geometry, values = scene.gears, scene.geometry, friction_values(scene)
+    where = max((values[one.name] for one in scene.materials() if one.share > 0.0), default=0.0)
+    if has_flank_friction(scene) and scene.contact.friction_law == "coulomb":
+        locks = min(locking_coefficients(geometry))
+        yield _near_locking("locking_teeth", "coefficient of friction of the flanks", where, locks, "teeth")
+    bases = {"pinion hub": geometry.base_radius_pinion, "gear hub": geometry.base_radius_gear}
+    ratios = [joint.radius / bases[joint.name] for joint in joints(scene) if joint.name in bases]
+    if gears.hub_friction > 0.0 and any(ratios):
+        quantity, coefficient = "coefficient of friction of the hubs", gears.hub_friction
+        yield _near_locking("locking_hubs", quantity, coefficient, 1.0 / max(ratios), "hubs")
+
+
+def _near_locking(name: str, quantity: str, coefficient: float, locks: float, what: str) -> ValidityRow:
+    holds = coefficient <= _NEAR_LOCKING * locks
+    verdict = (
+        f"the {what} are far from locking"
+        if holds
+        else f"near self-locking: the {what} can carry {1.0 / (1.0 - coefficient / locks):.2g} times their load"
+    )
+    limit = f"{_NEAR_LOCKING * locks:.3g}, half of that which can lock the {what}"
+    bound = _NEAR_LOCKING * locks
+    return ValidityRow(name, quantity, f"{coefficient:g}", limit, verdict, holds, coefficient, bound, "1")

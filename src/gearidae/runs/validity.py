@@ -31,7 +31,7 @@ from gearidae.contact.surroundings import (
 )
 from gearidae.mesh.pair_contact import PairContact
 from gearidae.runs.estimates import Rest, balanced_speed, mean_drive_torque, rest_of
-from gearidae.runs.locking import locking_rows
+from gearidae.runs.rubbing import locking_rows
 from gearidae.runs.yielding import yielding_row
 from gearidae.scene.gears import disc_inertia
 from gearidae.scene.prefixes import with_prefix
