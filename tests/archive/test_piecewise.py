@@ -24,10 +24,8 @@ from gearidae.report import build_report, series
 from gearidae.report.teeth import pack_teeth
 from same import assert_same
 
-teeth = import_module("gearidae.studies._tooth_contacts")
 page_module = import_module("gearidae.report.page")
 SAMPLES, PIECE, ANALYSED, DRAWN = 40_007, 512, 2_048, 200
-LOOKED_BACK = 4_096  # samples that the view of the teeth looks back at together
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.samples": SAMPLES})
 
 
@@ -44,7 +42,6 @@ def lengths(monkeypatch):
         (account_module, "PIECE", PIECE),
         (style, "_MOST_POINTS", DRAWN),
         (spectra, "_MOST_SAMPLES", ANALYSED),
-        (teeth, "_LONGEST_STRETCH", ANALYSED),
         (page_module, "pack_teeth", partial(pack_teeth, most_states=300)),  # which take the most time
     ):
         monkeypatch.setattr(module, name, value)
@@ -88,7 +85,8 @@ def test_pictures_and_report(long, lengths):
         picture(opened)
     assert max(lengths) <= ANALYSED
     page = build_report(opened, most_values=9_000)
-    assert max(lengths) <= ANALYSED + LOOKED_BACK
+    assert max(lengths) <= ANALYSED
+    assert "cannot be repeated" in page  # it is no run, of which the teeth are asked for at some samples only
     assert page == build_report(ds, most_values=9_000)
 
 

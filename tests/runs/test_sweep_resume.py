@@ -235,21 +235,6 @@ def test_runs_with_other_settings_are_left_alone(cut_off, computed, settings):
     assert kept_files(cut_off) == files
 
 
-def test_runs_that_version_0_1_0_has_kept_are_named(tmp_path, computed):
-    archive, folder = tmp_path / "sweep.nc", tmp_path / "sweep.nc.runs"
-    folder.mkdir()
-    former = {folder / "runs.jsonl", folder / f"{0:064x}.nc"}
-    for path in former:
-        path.touch()
-    with pytest.raises(gd.SceneError, match="2 of its runs are in"):
-        gd.sweep(LOW, {KEY: FRACTIONS}, archive=archive)
-    with pytest.warns(UserWarning, match=r"2 of the runs kept .*those of gearidae 0\.1\.0"):
-        gd.sweep(LOW, {KEY: [1.0]}, archive=archive, resume=True)
-    assert set(folder.iterdir()) == former
-    gd.sweep(LOW, {KEY: [1.0]}, archive=archive, overwrite=True)
-    assert list(tmp_path.iterdir()) == [archive]
-
-
 def test_other_files_in_the_folder_stay(cut_off):
     note = cut_off.with_name("sweep.nc.runs") / "note.txt"
     note.write_text("mine")
