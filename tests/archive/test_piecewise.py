@@ -21,7 +21,7 @@ from gearidae.archive.growing import GrowingArchive
 from gearidae.drawing import style
 from gearidae.plot import spectra
 from gearidae.report import build_report, series
-from gearidae.report.teeth import pack_teeth
+from gearidae.report.teeth import pack_runs
 from same import assert_same
 
 page_module = import_module("gearidae.report.page")
@@ -42,7 +42,7 @@ def lengths(monkeypatch):
         (account_module, "PIECE", PIECE),
         (style, "_MOST_POINTS", DRAWN),
         (spectra, "_MOST_SAMPLES", ANALYSED),
-        (page_module, "pack_teeth", partial(pack_teeth, most_states=300)),  # which take the most time
+        (page_module, "pack_runs", partial(pack_runs, most_states=300)),  # which take the most time
     ):
         monkeypatch.setattr(module, name, value)
     found = []

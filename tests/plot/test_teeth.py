@@ -214,7 +214,8 @@ def test_bodies_that_deflect_have_forces_and_states():
     ds = gd.simulate(SCENE.replace({"contact.bodies": "elastic"}), t_end=1e-3, samples=11)
     figure = gd.plot.teeth(ds, time=5e-4)
     words = " ".join(ax.get_title(loc="left") for ax in figure.axes)
-    assert "pushes with" in words
+    assert "pulls with" in words
+    assert "stretched" in words
     assert "expected asperities" not in words  # joined heights differ along the contact
 
 

@@ -200,7 +200,7 @@ def test_run_summary_in_the_words_of_the_terminal(single, swept, capsys):
     ("keep", "sections"),
     [
         ([], set()),
-        (["samples"], {"series"}),
+        (["samples"], {"series", "teeth"}),
         (["gear_speed", "events"], {"series", "events"}),
         (["events"], {"events"}),
     ],

@@ -168,7 +168,8 @@ def test_a_page_says_why_the_teeth_are_not_shown(single, swept):
     assert 'id="teeth-viewer"' in build_report(long, teeth=True)
     page = build_report(single, teeth=False)
     assert "Teeth in mesh" not in page
-    other = single.assign_attrs(scene=json.dumps(SCENE.replace({"drive.torque": 5e-18}).to_dict()))
+    changes = {"coating.sam_fraction": 0.5, "drive.torque": 5e-18}
+    other = single.assign_attrs(scene=json.dumps(SCENE.replace(changes).to_dict()))
     page = build_report(other)
     assert 'id="teeth-viewer"' not in page
     assert "cannot be repeated here" in page

@@ -67,7 +67,7 @@ def assert_continued(first, second, whole):
     for name in ("steps", "restarts", "residual_evaluations", "guard_evaluations"):
         assert first.attrs[name] + second.attrs[name] == whole.attrs[name]
     assert second.gearidae.energy_balance == whole.gearidae.energy_balance
-    words = [end_state_of(ds)[0] for ds in (second, whole)]
+    words = [end_state_of(ds.attrs)[0] for ds in (second, whole)]
     assert words[0].size == words[1].size
 
 
@@ -271,7 +271,7 @@ def test_bad_starts(tmp_path):
 def test_a_damaged_state_is_refused_or_checked():
     """Text that is none, words cut short, another layout, another scene, and what is no number."""
     first = gd.simulate(LOW)
-    words, _ = end_state_of(first)
+    words, _ = end_state_of(first.attrs)
     text = first.attrs["end_state"]
 
     def refused(**attributes):
@@ -448,7 +448,7 @@ def test_every_number_of_a_chain_is_the_same_in_other_units():
     scene, run = WORN, gd.simulate(WORN)
     assert float(run.time_adhering) > 0.01
     for change in UNITS.values():
-        words, start = end_state_of(run)
+        words, start = end_state_of(run.attrs)
         before, at_end = kept(scene, words, start), end_of(scene, words, start)
         scene = WORN.replace({"run.duration": "1 ms"} | change)
         after = kept(scene, checkpoint_of_start(scene, at_end), at_end.time)

@@ -89,8 +89,7 @@ class _Reader:
     """Reads the states of the teeth at some samples, see `gearidae.engine.integrate.driver.SampleReader`."""
 
     def __init__(self, scene: Scene, begin: float, samples: Iterable[int]) -> None:
-        self._scene, self._samples = scene, deque(samples)
-        self._times = sample_times(begin, scene.run.duration, scene.run.sample_count)
+        self._scene, self._begin, self._samples = scene, begin, deque(samples)
         self._materials = [MATERIAL_NAMES.index(one.name) for one in scene.materials() if one.share > 0.0]
         self.states: list[MeshState] = []
 
@@ -100,13 +99,14 @@ class _Reader:
 
     def read(self, problem: Problem, t: float, state: Callable[[], Floats]) -> None:
         m = problem.model
-        before = copied(m.state), copied(m.work), m.rows.copy()
+        # the rows of a population are many, and only read
+        before = copied(m.state), copied(m.work), None if m.scene.population.flanks else m.rows.copy()
         y, row = state(), np.empty(len(problem.columns))
         observe_at(problem.located.place, t, y, row)
         seen = dict(zip(problem.columns, row.tolist(), strict=True))
         self.states.append(
             MeshState(
-                time=float(self._times[self._samples.popleft()]),
+                time=self._time(self._samples.popleft()),
                 travel=float(y[PHASE] + m.state.turns) * self._scene.geometry.base_pitch,
                 transmission_error=seen["transmission_error"],
                 gear_speed=seen["gear_speed"],
@@ -116,7 +116,12 @@ class _Reader:
         )
         assign(m.state, before[0])
         assign(m.work, before[1])
-        m.rows[:] = before[2]
+        if before[2] is not None:
+            m.rows[:] = before[2]
+
+    def _time(self, sample: int) -> float:
+        run = self._scene.run
+        return float(sample_times(self._begin, run.duration, run.sample_count, range(sample, sample + 1))[0])
 
     def _contacts(self, m: Model, t: float, y: Floats) -> Iterator[ToothContact]:
         """Go through the pairs that are on their path, or near enough for a force."""

@@ -31,7 +31,7 @@ from gearidae.report.tables import (
     summary_tables,
     validity_table,
 )
-from gearidae.report.teeth import pack_teeth, runs_with_teeth, time_to_repeat
+from gearidae.report.teeth import pack_runs, runs_with_teeth, time_to_repeat
 from gearidae.studies.declared import studies
 from gearidae.studies.products import answer, kind_of
 
@@ -190,18 +190,17 @@ def _viewer(ds: xr.Dataset, most_values: int) -> str:
 
 def _teeth(ds: xr.Dataset, wanted: bool | None) -> str:
     """Place the view of the teeth and its data, or say why there is none; rollers have no teeth."""
-    if not runs_with_teeth(ds):
+    shown = runs_with_teeth(ds) if wanted is not False else []
+    if not shown:
         return ""
-    if wanted is None and (seconds := time_to_repeat(ds)) > _SOON:
+    if wanted is None and (seconds := time_to_repeat(shown)) > _SOON:
         again = f"run again, which takes about {in_words(seconds)}: gearidae report --teeth (teeth=True)"
         return html.paragraph(f"Not shown. For the teeth in mesh the scene must {again}.")
-    if wanted is False:
-        return ""
     try:
-        data = pack_teeth(ds)
+        data = pack_runs(shown)
     except SceneError as error:
         return html.paragraph(f"Not shown. {error}")
-    return '<div id="teeth-viewer"></div>\n' + html.json_block("teeth-data", data) if data else ""
+    return '<div id="teeth-viewer"></div>\n' + html.json_block("teeth-data", data)
 
 
 def _resource(name: str) -> str:

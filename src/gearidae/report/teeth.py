@@ -78,7 +78,11 @@ def pack_teeth(ds: xr.Dataset, most_states: int = MOST_STATES) -> dict[str, Any]
     SceneError
         If a run cannot be repeated.
     """
-    shown = runs_with_teeth(ds)
+    return pack_runs(runs_with_teeth(ds), most_states)
+
+
+def pack_runs(shown: list[Run], most_states: int = MOST_STATES) -> dict[str, Any]:
+    """Pack the teeth in mesh of some runs, as `pack_teeth` does."""
     if not shown:
         return {}
     share = max(2, most_states // len(shown))
@@ -100,9 +104,9 @@ def runs_with_teeth(ds: xr.Dataset) -> list[Run]:
     return shown if all(motion_samples(run.data) for run in shown) else []
 
 
-def time_to_repeat(ds: xr.Dataset) -> float:
-    """Wall time that the runs have taken whose teeth a report can show [s]."""
-    return sum(float(run_value(run.data, "wall_time")) for run in runs_with_teeth(ds))
+def time_to_repeat(shown: list[Run]) -> float:
+    """Wall time that some runs have taken [s]."""
+    return sum(float(run_value(run.data, "wall_time")) for run in shown)
 
 
 def _pack_run(run: xr.Dataset, most: int) -> dict[str, Any]:

@@ -149,7 +149,7 @@ def _refuse_other_motion(run: xr.Dataset, scene: Scene, samples: Integers, state
     travels = _read(run, "gear_angle", samples) * scene.geometry.base_radius_gear + first_travel(run, scene)
     errors = _read(run, "transmission_error", samples)
     for state, travel, error in zip(states, travels.tolist(), errors.tolist(), strict=True):
-        if not max(abs(state.transmission_error - error), abs(state.travel - travel)) <= bound:
+        if not (abs(state.transmission_error - error) <= bound and abs(state.travel - travel) <= bound):
             both = f"{state.transmission_error:.9g} m, recorded {error:.9g} m"
             raise _not_repeated(run, f"moves otherwise at t = {state.time:g} s (transmission error {both})")
 

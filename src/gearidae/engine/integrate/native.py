@@ -119,17 +119,12 @@ def state_for_sample(s: Stepper, t: float) -> None:
         set_deflections(s.m, t, s.dky, False)
 
 
-@compiled(inline=True)
-def _stepper(place: int, arrays: Arrays) -> Stepper:
-    """Put the model and the arrays of a run together."""
-    m = model_at(place)
-    return Stepper(arrays.handles, m, arrays.y, arrays.yp, arrays.dky, arrays.spare, arrays.clock)
-
-
 @compiled
 def state_at_sample(place: int, arrays: Arrays, t: float) -> None:
     """`state_for_sample`, for Python."""
-    state_for_sample(_stepper(place, arrays), t)
+    m = model_at(place)
+    s = Stepper(arrays.handles, m, arrays.y, arrays.yp, arrays.dky, arrays.spare, arrays.clock)
+    state_for_sample(s, t)
 
 
 @compiled(inline=True)
@@ -159,8 +154,9 @@ def advance(place: int, arrays: Arrays, out: Output, budget: int) -> None:
     budget : int
         Steps to do at most.
     """
-    s = _stepper(place, arrays)
-    m, driver = s.m, s.m.work.driver
+    m = model_at(place)
+    s = Stepper(arrays.handles, m, arrays.y, arrays.yp, arrays.dky, arrays.spare, arrays.clock)
+    driver = m.work.driver
     flag = driver.pending - 1
     if driver.pending < 0:  # a fresh start
         m.work.adams.wanted = m.work.adams.own
