@@ -32,7 +32,7 @@ def shoot(done, total):
     if len(list(pathlib.Path(sys.argv[1] + ".runs").glob("*.npz"))) >= 3:
         os.kill(os.getpid(), signal.SIGKILL)
 
-gd.sweep(low, {"coating.sam_fraction": [1.0, 0.8, 0.6, 0.5, 0.48, 0.45]}, jobs=int(sys.argv[2]),
+gd.sweep(low, {"coating.sam_fraction": [1.0, 0.8, 0.6, 0.5, 0.48, 0.45]}, jobs=1,
          archive=sys.argv[1], progress=shoot)
 """
 
@@ -78,11 +78,10 @@ def kept_files(archive):
     return sorted(archive.with_name(f"{archive.name}.runs").iterdir())
 
 
-@pytest.mark.parametrize("jobs", [1, 2])
-def test_a_killed_sweep_goes_on_and_equals_one_that_was_not(tmp_path, computed, expected, jobs):
+def test_a_killed_sweep_goes_on_and_equals_one_that_was_not(tmp_path, computed, expected):
     """The process shoots itself as soon as three runs are kept; what it had done is not done again."""
     archive = tmp_path / "sweep.nc"
-    shot = subprocess.run([sys.executable, "-c", SHOT, archive, str(jobs)], capture_output=True, check=False)
+    shot = subprocess.run([sys.executable, "-c", SHOT, archive], capture_output=True, check=False)
     assert shot.returncode == -signal.SIGKILL, shot.stderr
     assert not archive.exists()
     assert len(kept_files(archive)) == 3

@@ -1,4 +1,7 @@
-"""What every study writes is known to info, plot and report, which give the same answer."""
+"""What holds for every study: interrupted, resumed, kept from being replaced, and its file known to all who read it.
+
+That another's lock and a name that cannot be written are refused is tested for all files in `tests/archive`.
+"""
 
 from __future__ import annotations
 
@@ -9,85 +12,62 @@ import subprocess
 import sys
 
 import pytest
+import xarray as xr
 
 import gearidae as gd
+from gearidae.archive.lock import is_locked
 from gearidae.cli import main
 from gearidae.report import build_report
 from gearidae.studies.declared import studies
 from gearidae.studies.products import answer, kind_of, open_product
+from reference.small_studies import LOW, STUDIES
+from sweeps import without_times
 
-LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 4e-3, "run.samples": 401})
-LAW = gd.wear.loss_law("adhesion_work", energy=1e-6)
-WINDOWS = {"cycles": 3, "settle": 2, "starts": 1, "places": 2, "fraction": 0.68, "tolerance": 1e-2}
-WORN = LOW.replace({"coating.sam_fraction": 0.7})
-DRAWN = {"drive.torque": "uniform(4e-18, 5e-18)", "coating.sam_fraction": "uniform(0.5, 1)"}
-
-
-def lives(path, **more):
-    vary = {"law.energy": "uniform(1e-6, 2e-6)"}
-    return gd.studies.lives(WORN, LAW, vary, 2, **WINDOWS, archive=path, **more)
-
-
-def operating_map(path, **more):
-    over = {"drive.torque": [4e-18, 5e-18], "coating.sam_fraction": [1.0, 0.5]}
-    return gd.studies.operating_map(LOW, over, archive=path, **more)
-
-
-def hub_life(path, **more):
-    joints = {"gears.pinion_hub_radius": 3e-6, "gears.gear_hub_radius": 6e-6, "run.duration": 0.1e-3}
-    wear = {"coefficient": 1e-16, "threshold": "2 sigma", "spread": 2.0, "seeds": 5, "clearance": True}
-    rubbing = gd.preset("teodorescu2009").replace(joints)
-    return gd.studies.hub_life(rubbing, **wear, turns=1, tolerance=0.1, archive=path, **more)
-
-
-def posterior(path, **more):
-    seen = [gd.studies.Observation(value=False)]
-    priors = {"drive.torque": "normal(4.5e-18, 2e-19)"}
-    return gd.studies.calibrate(LOW, priors, seen, points=3, archive=path, **more)
-
-
-def starting_torque(path, **more):
-    bare = LOW.replace({"coating.sam_fraction": 0.45})
-    return gd.studies.starting_torque(bare, "own", impacts=1, tolerance=0.5, archive=path, **more)
-
-
-def starting_torques(path, **more):
-    gears = gd.preset("teodorescu2009").replace({"contact.roughness": "discrete", "load.torque": 0.0})
-    return gd.studies.starting_torque(gears, seeds=2, archive=path, **more)
-
-
-def sticking_threshold(path, **more):
-    ends = {"between": (0.4, 0.7), "exits": 5, "width": 0.05}
-    return gd.studies.sticking_threshold(LOW, **ends, archive=path, **more)
-
-
-STUDIES = {
-    "coating_map": lambda path, **more: gd.studies.coating_map(LOW, [1.0, 0.8], archive=path, **more),
-    "convergence": lambda path, **more: gd.studies.convergence(
-        LOW, ["gear_angle", "adhesion_loss"], rtols=[1e-4, 1e-5, 1e-6], archive=path, **more
-    ),
-    "ensemble": lambda path, **more: gd.studies.ensemble(
-        LOW, DRAWN, 4, of="min_gear_speed", archive=path, **more
-    ),
-    "hub_life": hub_life,
-    "life": lambda path, **more: gd.studies.life(
-        WORN, LAW, **WINDOWS, resolved="place", archive=path, **more
-    ),
-    "lives": lives,
-    "operating_map": operating_map,
-    "posterior": posterior,
-    "pull_off": lambda path, **more: gd.studies.pull_off(LOW, 5, archive=path, **more),
-    "starting_torque": starting_torque,
-    "starting_torques": starting_torques,
-    "sticking_threshold": sticking_threshold,
-}
+KEEPS_NOTHING = {"pull_off"}
+"""Studies of seconds, which begin anew."""
 
 
 @pytest.fixture(scope="module", params=STUDIES)
 def product(request, tmp_path_factory):
     """Make a study's file: its kind, its name, its content."""
     path = tmp_path_factory.mktemp("study") / f"{request.param}.nc"
-    return request.param, path, STUDIES[request.param](path)
+    return request.param, path, STUDIES[request.param](path, jobs=1)
+
+
+def test_interrupted_and_resumed_by_two_threads_it_ends_alike(product, tmp_path):
+    kind, _, ds = product
+    path = tmp_path / "out.nc"
+
+    def ctrl_c(done, total):
+        if done > 1.0 or done == total:
+            raise KeyboardInterrupt
+
+    with pytest.raises(gd.Interrupted, match="--resume"):
+        STUDIES[kind](path, jobs=1, progress=ctrl_c)
+    assert not is_locked(path)
+    left = [entry for folder in tmp_path.glob("out.nc.*") for entry in folder.iterdir()]
+    assert bool(left) is (kind not in KEEPS_NOTHING)
+    if left:
+        with pytest.raises(gd.SceneError, match=r"was cut off.*--resume.*--overwrite"):
+            STUDIES[kind](path)
+    whole = STUDIES[kind](path, jobs=2, resume=True)
+    same = (without_times(one).drop_vars("time_to_take", errors="ignore") for one in (whole, ds))
+    xr.testing.assert_identical(*same)
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_what_is_whole_is_neither_computed_again_nor_replaced(product, monkeypatch):
+    kind, path, ds = product
+    before = path.read_bytes()
+    monkeypatch.setattr("gearidae.engine.solve", None)  # any run would fail
+    again = STUDIES[kind](path, resume=True)
+    assert answer(again, kind) == answer(ds, kind)
+    with pytest.raises(gd.SceneError, match="exists already"):
+        STUDIES[kind](path)
+    (usual,) = STUDIES[kind].__defaults__
+    with pytest.raises(gd.SceneError, match="of another sweep or study"):
+        STUDIES[kind](path, usual.replace({"name": "other"}), resume=True)
+    assert path.read_bytes() == before
 
 
 def test_a_file_is_known_for_what_it_is(product):
@@ -132,15 +112,6 @@ def test_a_study_needs_neither_the_engine_nor_matplotlib_to_be_read():
 
 def test_every_kind_is_tested_here():
     assert set(studies()) == set(STUDIES)
-
-
-def test_a_whole_file_is_not_computed_again(product, monkeypatch):
-    kind, path, _ = product
-    before = path.read_bytes()
-    monkeypatch.setattr("gearidae.engine.solve", None)  # any run would fail
-    again = STUDIES[kind](path, resume=True)
-    assert answer(again, kind) == answer(product[2], kind)
-    assert path.read_bytes() == before
 
 
 def test_terminal_report_and_json_give_the_same_answer(product, tmp_path, capsys):
