@@ -140,12 +140,6 @@ def test_energy_is_kept(changes):
     assert abs(found["residual"]) < 1e-7 * found["throughput"]
 
 
-def test_both_drivers_agree_with_attraction():
-    scene = GEARS.replace({"run.duration": 2e-5, "run.rtol": 1e-8})
-    one, other = (gd.simulate(scene, backend=backend) for backend in ("native", "sksundae"))
-    np.testing.assert_allclose(one.gear_speed.values, other.gear_speed.values, rtol=1e-6)
-
-
 def test_nothing_changes_where_no_material_has_a_constant():
     """Not a bit: a constant of a material that the flanks do not have is none."""
     bare = GEARS.replace(

@@ -216,18 +216,6 @@ def test_blocks_of_few_passages_hold_the_same_table(backend, monkeypatch):
     np.testing.assert_array_equal(np.concatenate([block.passages for block in blocks]), whole)
 
 
-def test_a_resumed_run_has_the_same_table(monkeypatch):
-    monkeypatch.setattr(portable, "CHECKPOINT_STEPS", 500)
-    blocks = blocks_of(LOW, "sksundae")
-    whole = np.concatenate([block.passages for block in blocks])
-    stops = [place for place, block in enumerate(blocks) if block.checkpoint is not None][:-1]
-    assert len(stops) > 2
-    for stop in stops:
-        rest = blocks_of(LOW, "sksundae", blocks[stop].checkpoint)
-        parts = [block.passages for block in (*blocks[: stop + 1], *rest)]
-        np.testing.assert_array_equal(np.concatenate(parts), whole)
-
-
 def test_a_chain_goes_on_with_its_sums():
     """Cut between two exits; forces since the last exit go on, too."""
     whole = gd.simulate(FAST)

@@ -113,15 +113,6 @@ def test_the_balance_closes_where_the_coating_changes_along_the_flank():
     assert abs(other.radius_work) > 1e-4 * balance.throughput
 
 
-def test_both_drivers_find_the_same_motion():
-    """Over one mesh exit and a quarter of a pitch; both at 1e-8, errors of some tens of tolerances."""
-    scene = LOW.replace(
-        {**ON, "coating.sam_fraction": 0.6, "run.duration": 0.05, "run.rtol": 1e-8, "run.samples": 11}
-    )
-    native, portable = (gd.simulate(scene, backend=each) for each in ("native", "sksundae"))
-    np.testing.assert_allclose(native.gear_speed, portable.gear_speed, rtol=1e-6)
-
-
 def test_numbers_checked_by_an_independent_integrator():
     """Smallest speed, speed at 0.2 s and the sticking limit with the force and without: three digits are known.
 
