@@ -26,7 +26,7 @@ from same import assert_same
 
 teeth = import_module("gearidae.studies._tooth_contacts")
 page_module = import_module("gearidae.report.page")
-SAMPLES, PIECE, ANALYSED, DRAWN = 40_007, 512, 2_048, 200
+SAMPLES, PIECE, ANALYSED, DRAWN = 10_007, 512, 2_048, 200
 LOOKED_BACK = 4_096  # samples that the view of the teeth looks back at together
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.samples": SAMPLES})
 
