@@ -160,30 +160,8 @@ def test_a_mutated_signal_is_read_or_refused(tmp_path, row, put, keep):
 
 PARTIAL = gd.preset("teodorescu2009_low_speed").replace({"run.duration": "8 ms", "run.samples": 101})
 NAMED_ENDINGS = (0, 2, 3)
-HUGE = "x" * 200_000
-ATTRIBUTES = (
-    "title",
-    "summary",
-    "scene",
-    "status",
-    "backend",
-    "skipped",
-    "schema_version",
-    "product_version",
-    "rtol",
-    "steps",
-)
-VALUES = (
-    np.arange(3.0),
-    np.arange(5, dtype=np.int8),
-    HUGE,
-    "",
-    "{",
-    "[" * 5000,
-    float("nan"),
-    2**62,
-    "\x1b[31mred\nline",
-)
+ATTRIBUTES = ("title", "scene", "status", "backend", "schema_version", "rtol")
+VALUES = ("x" * 200_000, "[" * 5000, np.arange(3.0), 2**62, float("nan"), "\x1b[31mred\nline")
 
 
 class _CutOffError(Exception):
@@ -248,7 +226,7 @@ def read_by_commands(file, case, folder, capsys, *, pictures=True):
         assert "Traceback" not in said
 
 
-@pytest.mark.parametrize("seed", range(24))
+@pytest.mark.parametrize("seed", range(8))
 def test_a_damaged_partial_archive_ends_in_one_line(tmp_path, partial, partial_case, capsys, seed):
     """Flipped bits anywhere, and ends cut off."""
     rng = random.Random(seed)
@@ -259,19 +237,19 @@ def test_a_damaged_partial_archive_ends_in_one_line(tmp_path, partial, partial_c
         content[rng.randrange(len(content))] ^= 1 << rng.randrange(8)
     file = copied(partial, tmp_path)
     file.write_bytes(bytes(content))
-    read_by_commands(file, partial_case, tmp_path, capsys, pictures=seed % 6 == 0)
+    read_by_commands(file, partial_case, tmp_path, capsys, pictures=seed % 4 == 0)
 
 
-@pytest.mark.parametrize("attribute", ATTRIBUTES)
-def test_an_attribute_of_another_type_ends_in_one_line(tmp_path, partial, partial_case, capsys, attribute):
+@pytest.mark.parametrize(("attribute", "value"), list(zip(ATTRIBUTES, VALUES, strict=True)), ids=ATTRIBUTES)
+def test_an_attribute_of_another_type_ends_in_one_line(
+    tmp_path, partial, partial_case, capsys, attribute, value
+):
     """Arrays, bytes, huge and empty texts, numbers for texts and texts for numbers."""
-    for turn, value in enumerate(VALUES, ATTRIBUTES.index(attribute)):
-        file = copied(partial, tmp_path)
-        with netCDF4.Dataset(file, "a") as ds:
-            ds.delncattr(attribute)
-            ds.setncattr(attribute, value)
-        # over all attributes, each value has its picture
-        read_by_commands(file, partial_case, tmp_path, capsys, pictures=turn % len(VALUES) == 0)
+    file = copied(partial, tmp_path)
+    with netCDF4.Dataset(file, "a") as ds:
+        ds.delncattr(attribute)
+        ds.setncattr(attribute, value)
+    read_by_commands(file, partial_case, tmp_path, capsys)
 
 
 def test_an_undamaged_partial_archive_is_resumed(tmp_path, partial, partial_case, capsys):
