@@ -44,13 +44,14 @@ warm: $(VENV)/installed-dev
 # The short suite: both drivers, scenes, archives, pictures and the command line.
 # In one process, which compiles the solver once; two of these suites run side by side in `.ci/run`.
 SHORT := -q \
-    tests/engine/test_backends.py tests/engine/test_compiled_once.py tests/scene tests/archive/test_dataset.py tests/archive/test_netcdf.py \
+    tests/engine/test_backends.py tests/engine/test_compiled_once.py tests/engine/test_indices.py tests/scene tests/archive/test_dataset.py tests/archive/test_netcdf.py \
     tests/archive/test_lock.py tests/analysis/test_measured.py \
     tests/cli/test_values.py tests/cli/test_session.py tests/plot/test_plot.py tests/report/test_report.py
 
-# The warning is one that numpy itself switches off.
+# Compiled with a check of every index, as this environment compiles the solver for nothing else. The warning is one that
+# numpy itself switches off.
 test-lowest: $(LOWEST)/installed
-	$(LOWEST)/$(SCRIPTS)/python -m pytest -p no:cacheprovider -W "ignore:numpy.ndarray size changed:RuntimeWarning" $(SHORT)
+	NUMBA_BOUNDSCHECK=1 $(LOWEST)/$(SCRIPTS)/python -m pytest -p no:cacheprovider -W "ignore:numpy.ndarray size changed:RuntimeWarning" $(SHORT)
 
 # The main job first: compiled code that it makes is taken from the cache by the tests.
 test-newest: $(NEWEST)/installed-test
