@@ -170,17 +170,17 @@ REDUCED = (
 
 @pytest.mark.slow
 def test_a_part_of_the_table(maps):
-    """Seven conditions, three fractions, three rates: no row with more than one wrong verdict in twenty clear ones."""
+    """Seven conditions, three fractions, two rates: no row with more than one wrong verdict in twenty clear ones."""
     chosen = {name: CONDITIONS[name] for name in REDUCED}
-    rows = make_rows(maps, chosen, fractions=(0.9, 0.637, 0.45), trials=1, seed=19)
+    rows = make_rows(maps, chosen, fractions=(0.9, 0.637, 0.45), rates=(100e3, 10e3), trials=1, seed=19)
     clear = 0
     for name, each in rows.items():
         for title, row in each.items():
-            assert row.records == 9
+            assert row.records == 6
             assert row.share_wrong <= 0.05, (name, title, row.wrong)
             clear += row.clear
     # the verdict must not be safe by never being clear: half of what is above the map and turns is
-    assert clear >= 0.4 * 2 * 6 * len(REDUCED)
+    assert clear >= 0.4 * 2 * 4 * len(REDUCED)
 
 
 @pytest.mark.parametrize("title", TITLES)

@@ -37,7 +37,12 @@ def test_a_coating_and_a_flank_of_very_different_stretch(number):
     assert run_one(random_scene(1, number)).sound
 
 
-@pytest.mark.parametrize("number", [19, 90, 460, 546, 671, 675])
+BY_HAND = pytest.mark.by_hand
+
+
+@pytest.mark.parametrize(
+    "number", [pytest.param(19, marks=BY_HAND), 90, 460, 546, 671, pytest.param(675, marks=BY_HAND)]
+)
 def test_no_event_follows_another_without_end(number):
     """Found by the stress run: resistance through zero, slip of little surplus, a thousand mesh marks in a step."""
     outcome = run_one(random_scene(1, number))
@@ -87,9 +92,9 @@ def test_the_same_numbers_give_the_same_scene():
 
 
 def test_half_of_the_wide_scenes_have_later_keys_and_the_others_are_as_before():
-    """Each key is drawn in some of a hundred scenes; the same numbers give the same scene."""
-    drawn = {n: wide_scene(3, n) for n in range(100)}
-    assert 30 < sum(scene == random_scene(3, n) for n, scene in drawn.items()) < 70
+    """Each key is drawn in some of fifty scenes; the same numbers give the same scene."""
+    drawn = {n: wide_scene(3, n) for n in range(50)}
+    assert 15 < sum(scene == random_scene(3, n) for n, scene in drawn.items()) < 35
     assert wide_scene(3, 17) == drawn[17]
     gears = [scene for scene in drawn.values() if scene.roller is None]
     for has_it in (
