@@ -8,8 +8,8 @@ import xarray as xr
 
 import gearidae as gd
 from gearidae.analysis import assess
-from gearidae_bench.assessment_signals import CONDITIONS, RATE, clean_speeds
-from gearidae_bench.assessment_table import make_maps, make_rows
+from gearidae_pages.assessment_signals import CONDITIONS, RATE, clean_speeds
+from gearidae_pages.assessment_table import make_maps, make_rows
 
 
 @pytest.fixture(scope="module")

@@ -1,6 +1,6 @@
 """The table of the page "The mean and the gear on the bench": gears of one design with real asperities.
 
-``python -m gearidae_bench.specimens [seeds]`` prints it: speeds and losses of 1 ms at high speed, undamped, and
+``python -m gearidae_pages.specimens [seeds]`` prints it: speeds and losses of 1 ms at high speed, undamped, and
 starting torques without dry resistance. Twenty gears take about two minutes on two cores.
 """
 

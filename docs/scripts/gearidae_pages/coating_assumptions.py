@@ -13,7 +13,7 @@ from typing import Any, Final
 
 import gearidae as gd
 from gearidae.scene import Scene
-from gearidae_bench.sensitivity import sticking_limit
+from gearidae_pages.sensitivity import sticking_limit
 
 __all__ = [
     "ALL_ASSUMPTIONS",

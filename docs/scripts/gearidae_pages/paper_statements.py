@@ -2,8 +2,8 @@
 
 Makes the numbers of a table of `docs/validation.md`; without numbers of rows all of them::
 
-    python -m gearidae_bench.paper_statements 1 3
-    python -m gearidae_bench.paper_statements --picture docs/images/coating_family.png
+    python -m gearidae_pages.paper_statements 1 3
+    python -m gearidae_pages.paper_statements --picture docs/images/coating_family.png
 """
 
 from __future__ import annotations

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 import gearidae as gd
 from gearidae.drawing.style import COLOURS, LINE_STYLES
-from gearidae_bench.coating_assumptions import ALL_ASSUMPTIONS, LAWS, Assumption, LowSpeed
+from gearidae_pages.coating_assumptions import ALL_ASSUMPTIONS, LAWS, Assumption, LowSpeed
 
 __all__ = ["draw_all", "draw_frequencies", "draw_high_speed", "draw_impacts", "draw_limits", "draw_low_speed"]
 

@@ -1,6 +1,6 @@
 """Cycle jump against brute force: a life in which the coverage changes in every mesh cycle.
 
-    python -m gearidae_bench.life_check [--cycles 2000] [--resolved place] [--pairing independent]
+    python -m gearidae_pages.life_check [--cycles 2000] [--resolved place] [--pairing independent]
 
 The loss law is made so fast that the gear sticks after some thousand mesh cycles, which are all simulated: each goes
 on from the one before, with the coverage that its predecessor's exposures leave. The study jumps over the same life.

@@ -3,7 +3,7 @@
 import numpy as np
 
 import gearidae as gd
-from gearidae_bench.life_picture import follow, shown
+from gearidae_pages.life_picture import follow, shown
 
 
 def test_a_short_life_is_followed_assessed_and_told():

@@ -7,7 +7,7 @@ import math
 import pytest
 
 import gearidae as gd
-from gearidae_bench.figure_sensitivity import INFERRED, QUANTITIES, Quantity, figure_changes, figure_table
+from gearidae_pages.figure_sensitivity import INFERRED, QUANTITIES, Quantity, figure_changes, figure_table
 
 
 def test_changes_are_those_of_a_power_law():

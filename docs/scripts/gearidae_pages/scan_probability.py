@@ -4,7 +4,7 @@ Four synthetic scans of one spectrum give the asperities' numbers with their spr
 run with surfaces and coverages drawn from there until they stick or have had the time of 1,000 mesh exits. Makes the
 table of `docs/howto_ensembles.md`, some minutes on two cores::
 
-    python -m gearidae_bench.scan_probability
+    python -m gearidae_pages.scan_probability
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ __all__ = ["asperities_of_scans", "members", "probability_table", "waiting"]
 
 EXITS: Final = (10, 30, 100, 300, 1000)
 MEMBERS: Final = 64
-_CASE: Final = Path(__file__).parents[2] / "cases" / "low_speed.toml"
+_CASE: Final = Path(__file__).parents[3] / "cases" / "low_speed.toml"
 
 
 def asperities_of_scans(scans: int = 4) -> dict[str, str]:

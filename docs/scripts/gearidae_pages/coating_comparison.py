@@ -2,7 +2,7 @@
 
 Runs the presets under every combination and writes the tables and pictures of `docs/coating_compared.md`::
 
-    python -m gearidae_bench.coating_comparison docs
+    python -m gearidae_pages.coating_comparison docs
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import sys
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
-from gearidae_bench.coating_assumptions import (
+from gearidae_pages.coating_assumptions import (
     FRACTIONS,
     LAWS,
     HighSpeed,
@@ -22,7 +22,7 @@ from gearidae_bench.coating_assumptions import (
     impacts,
     low_speed,
 )
-from gearidae_bench.coating_pictures import draw_all
+from gearidae_pages.coating_pictures import draw_all
 
 __all__ = ["high_speed_table", "impact_table", "low_speed_table", "with_tables", "write_page"]
 

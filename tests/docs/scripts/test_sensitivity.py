@@ -7,7 +7,7 @@ import math
 import pytest
 
 import gearidae as gd
-from gearidae_bench.sensitivity import Limit, sensitivities, sensitivity_table, sticking_limit
+from gearidae_pages.sensitivity import Limit, sensitivities, sensitivity_table, sticking_limit
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.samples": 3001})
 

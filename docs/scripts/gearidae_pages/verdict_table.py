@@ -1,6 +1,6 @@
 """Verdicts of all shipped cases and of the README's fractions at several tolerances and numbers of samples.
 
-``python -m gearidae_bench.verdict_table`` prints a table in Markdown, some minutes' work. Exit code 1 if the words of a
+``python -m gearidae_pages.verdict_table`` prints a table in Markdown, some minutes' work. Exit code 1 if the words of a
 scene differ. ``docs/verdicts.md`` has its result.
 """
 
@@ -17,7 +17,7 @@ from gearidae.scene import Scene
 
 __all__ = ["main", "scenes", "verdicts"]
 
-CASES = Path(__file__).parents[2] / "cases"
+CASES = Path(__file__).parents[3] / "cases"
 FRACTIONS = (1.0, 0.8, 0.6, 0.55, 0.5, 0.47, 0.45)
 TOLERANCES = (1e-5, 1e-6, 1e-7, 1e-8, 1e-9)
 SAMPLES = ("off", 5, 301, 30_001)

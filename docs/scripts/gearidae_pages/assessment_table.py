@@ -1,4 +1,4 @@
-"""How often a clear assessment is wrong: ``python -m gearidae_bench.assessment_table [--trials N] [--only TEXT]``.
+"""How often a clear assessment is wrong: ``python -m gearidae_pages.assessment_table [--trials N] [--only TEXT]``.
 
 Simulated speeds of known SAM fraction are spoilt as rigs spoil them and assessed against two maps, one at the preset's
 torque and one over torque. Renews the table of ``docs/assess.md`` (a few minutes).
@@ -16,7 +16,7 @@ import xarray as xr
 
 import gearidae as gd
 from gearidae.arrays import Floats
-from gearidae_bench.assessment_signals import (
+from gearidae_pages.assessment_signals import (
     CONDITIONS,
     FRACTIONS,
     Condition,
@@ -30,7 +30,7 @@ __all__ = ["RATES", "Row", "make_maps", "make_rows", "markdown"]
 
 RATES = (100e3, 25e3, 10e3)
 """Sampling rates [Hz]."""
-_PAGE = Path(__file__).parents[2] / "docs" / "assess.md"
+_PAGE = Path(__file__).parents[3] / "docs" / "assess.md"
 _MARKS = ("<!-- begin table -->\n", "<!-- end table -->\n")
 
 

@@ -10,7 +10,7 @@ import pytest
 
 import gearidae as gd
 from gearidae.asperities.tip import tabor_parameter
-from gearidae_bench.paper_statements import (
+from gearidae_pages.paper_statements import (
     STATEMENTS,
     coast_contact,
     contact_time,
@@ -18,7 +18,7 @@ from gearidae_bench.paper_statements import (
     tip_radius_of_tabor,
 )
 
-PAGE = (Path(__file__).parents[2] / "docs" / "validation.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[3] / "docs" / "validation.md").read_text(encoding="utf-8")
 
 
 def test_every_row_of_the_page_has_its_run():

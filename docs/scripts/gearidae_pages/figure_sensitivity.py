@@ -3,7 +3,7 @@
 One number at a time is changed by a tenth either way; the larger change of each quantity counts. Makes a table of
 `docs/validation.md`::
 
-    python -m gearidae_bench.figure_sensitivity
+    python -m gearidae_pages.figure_sensitivity
 """
 
 from __future__ import annotations

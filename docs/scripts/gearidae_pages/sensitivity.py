@@ -3,7 +3,7 @@
 For each key and value the SAM fraction is bisected at which the gear begins to stick within the run. Makes the table of
 `docs/validation.md`::
 
-    python -m gearidae_bench.sensitivity
+    python -m gearidae_pages.sensitivity
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 Follows the low-speed gears from full coverage, reads the coverage of each state from its noisy speed signal, draws both
 into ``life.png`` and prints what the page says of them, the time it took included::
 
-    python -m gearidae_bench.life_picture docs/images
+    python -m gearidae_pages.life_picture docs/images
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 import gearidae as gd
-from gearidae_bench.scan_probability import asperities_of_scans, probability_table, waiting
+from gearidae_pages.scan_probability import asperities_of_scans, probability_table, waiting
 
 
 def test_a_gear_counts_from_the_exits_at_which_it_stuck():

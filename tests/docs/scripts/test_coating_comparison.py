@@ -7,7 +7,7 @@ import math
 import pytest
 
 import gearidae as gd
-from gearidae_bench.coating_assumptions import (
+from gearidae_pages.coating_assumptions import (
     ALL_ASSUMPTIONS,
     FRACTIONS,
     Assumption,
@@ -16,8 +16,8 @@ from gearidae_bench.coating_assumptions import (
     LowSpeed,
     low_speed,
 )
-from gearidae_bench.coating_comparison import high_speed_table, impact_table, low_speed_table, with_tables
-from gearidae_bench.coating_pictures import draw_limits
+from gearidae_pages.coating_comparison import high_speed_table, impact_table, low_speed_table, with_tables
+from gearidae_pages.coating_pictures import draw_limits
 
 THICK = Assumption("jkr", "patches", 2.5e-9, radius_force=True)
 
