@@ -72,7 +72,7 @@ bench: $(VENV)/installed
 	PYTHONPATH=benchmarks $(BIN)/python benchmarks/make_page.py
 
 stress: $(VENV)/installed
-	PYTHONPATH=benchmarks $(BIN)/python -m gearidae_bench --stress -o out/stress
+	PYTHONPATH=tests:docs/scripts $(BIN)/python -m gearidae_pages.stress
 
 clean:
 	rm -rf $(VENV) $(LOWEST) $(NEWEST) out docs/_build docs/reference/generated build dist .mypy_cache .pytest_cache .ruff_cache .hypothesis

@@ -31,7 +31,7 @@ from gearidae.engine.pairs.tooth_pairs import history_of
 from gearidae.engine.setup import build_contact
 from gearidae.engine.setup.build import make_problem
 from gearidae.records import EventKind, Statistics
-from gearidae_bench.random_scenes import random_scene
+from reference.random_scenes import random_scene
 
 
 def roller(name, fraction=0.0, **changes):

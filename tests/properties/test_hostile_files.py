@@ -1,5 +1,6 @@
 """Mutated case files, archives and signals: a clean error that names the file or key, or a valid scene; never more."""
 
+import contextlib
 import random
 import shutil
 import sqlite3
@@ -202,13 +203,25 @@ def partial(tmp_path_factory):
         if time > 0.5 * PARTIAL.run.duration:
             raise _CutOffError
 
+    with many_checkpoints(), pytest.raises(_CutOffError):
+        gd.simulate(PARTIAL, archive=file, backend="sksundae", progress=cut)
+    assert [path.suffix for path in Store(file).folder.iterdir()] == [".npz"]
+    return file
+
+
+@contextlib.contextmanager
+def many_checkpoints():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(portable, "CHECKPOINT_STEPS", 100)
         patch.setattr(growing, "CHECKPOINT_SECONDS", 0.0)
-        with pytest.raises(_CutOffError):
-            gd.simulate(PARTIAL, archive=file, backend="sksundae", progress=cut)
-    assert [path.suffix for path in Store(file).folder.iterdir()] == [".npz"]
-    return file
+        yield
+
+
+@pytest.fixture(scope="module")
+def whole():
+    """The same run, not cut off."""
+    with many_checkpoints():
+        return gd.simulate(PARTIAL, backend="sksundae")
 
 
 def copied(partial, folder):
@@ -260,6 +273,28 @@ def test_a_damaged_partial_archive_ends_in_one_line(tmp_path, partial, partial_c
     file = copied(partial, tmp_path)
     file.write_bytes(bytes(content))
     read_by_commands(file, partial_case, tmp_path, capsys, pictures=seed % 6 == 0)
+
+
+@pytest.mark.parametrize("seed", range(16))
+def test_no_value_of_a_damaged_partial_archive_is_wrong_in_silence(tmp_path, partial, whole, seed):
+    """Zeros and other bytes over up to a page, anywhere: refused, or the beginning of the run to the last bit."""
+    rng = random.Random(f"values {seed}")
+    content = bytearray(partial.read_bytes())
+    at = rng.randrange(len(content))
+    length = min(rng.randrange(1, 4096), len(content) - at)
+    content[at : at + length] = rng.randbytes(length) if seed % 2 else bytes(length)
+    file = copied(partial, tmp_path)
+    file.write_bytes(bytes(content))
+    part, _ = attempt(open_archive, file)
+    for name in () if part is None else ("time", "gear_speed", "mesh_force", "event_time", "event_kind"):
+        values = part[name].values[np.isfinite(part[name].values)]
+        np.testing.assert_array_equal(values, whole[name].values[: values.size])
+    with many_checkpoints():
+        resumed, _ = attempt(
+            lambda path: gd.simulate(PARTIAL, archive=path, backend="sksundae", resume=True), file
+        )
+    if resumed is not None:
+        np.testing.assert_array_equal(resumed.gear_speed.values, whole.gear_speed.values)
 
 
 @pytest.mark.parametrize("attribute", ATTRIBUTES)

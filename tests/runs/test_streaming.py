@@ -182,7 +182,7 @@ def test_killed_at_five_random_instants_and_resumed_is_the_same_run(path):
 @pytest.mark.by_hand
 @pytest.mark.usefixtures("many_small_blocks")
 def test_killed_at_fifteen_random_instants_and_resumed_is_the_same_run(path):
-    """As many as it takes to hit all that a run does; the benchmark's `--kills` repeats it as often as one likes."""
+    """As many as it takes to hit all that a run does."""
     scene = LOW.replace({"run.duration": 0.1, "run.samples": 801})
     assert kill_again_and_again(path, scene, "sksundae", 15, 0.05) == 15
 

@@ -20,8 +20,6 @@ from gearidae.scene import MATERIAL_NAMES, Scene
 from gearidae.scene.combinations import may_deflect
 from gearidae.scene.friction import has_flank_friction
 
-__all__ = ["complaint_about", "complaint_about_exposures"]
-
 Floats = NDArray[np.float64]
 
 _WITH_FORCE = [EventKind.ONSET, EventKind.SEPARATION]

@@ -1,19 +1,31 @@
-"""Results of a stress run, as a page in Markdown."""
+"""The page of random scenes, run and checked by what the tests have for that.
+
+PYTHONPATH=tests:docs/scripts python -m gearidae_pages.stress [--runs 2000] [--seed 1]
+"""
 
 from __future__ import annotations
 
+import argparse
 import math
+import os
+import sys
 from collections import Counter
 from collections.abc import Sequence
-from datetime import date
+from datetime import UTC, date, datetime
+from functools import partial
+from pathlib import Path
 
 import numpy as np
 
 import gearidae
 from gearidae.records import Ending
-from gearidae_bench.stress import BALANCE_TOLERANCES, ELASTIC_SHARE, STEP_BUDGET, Outcome
+from gearidae.runs.executors import own_executor
+from reference.random_runs import BALANCE_TOLERANCES, ELASTIC_SHARE, STEP_BUDGET, Outcome, draw_and_run
+from reference.random_scenes import SCENES_PER_SURFACE
 
-__all__ = ["balance_quantiles", "counts", "page", "quantiles", "worst"]
+__all__ = ["page"]
+
+_PAGE = Path(__file__).parents[2] / "stress.md"
 
 _MEANINGS = {ending.status: ending.message for ending in Ending} | {
     "finished": "reached the end of the run",
@@ -21,7 +33,6 @@ _MEANINGS = {ending.status: ending.message for ending in Ending} | {
     f" ({STEP_BUDGET // ELASTIC_SHARE:,} with elastic bodies), correct until then",
     "refused": "rejected by a SceneError before the run",
     "raised": "**a defect**: an exception other than those for users",
-    "hung": "**a defect**: did not return",
 }
 _PURPOSE = (
     "After this page you know over which range of scenes the engine was tested, how the runs ended, and how large their"
@@ -102,31 +113,17 @@ def worst(outcomes: Sequence[Outcome]) -> list[Outcome]:
     return sorted(known, key=lambda o: (o.sound, -o.ratio if math.isfinite(o.ratio) else 0.0))[:_LISTED]
 
 
-def page(outcomes: Sequence[Outcome], seed: int, day: date, runs: int | None = None) -> str:
-    """Write the report.
-
-    Parameters
-    ----------
-    outcomes : sequence of Outcome
-    seed : int
-    day : date
-        When they were run.
-    runs : int, optional
-        Number of scenes requested, if fewer were done.
-
-    Returns
-    -------
-    str
-        Markdown.
-    """
+def page(outcomes: Sequence[Outcome], seed: int, day: date) -> str:
+    """Write the report in Markdown, of scenes of a seed that were run on a day."""
     unsound = [outcome for outcome in outcomes if not outcome.sound]
     longest = max((outcome.wall_time for outcome in outcomes), default=0.0)
-    command = f"python -m gearidae_bench --stress --runs {runs or len(outcomes)} --seed {seed}"
-    done = f"; interrupted after {len(outcomes)} scenes" if runs and runs > len(outcomes) else ""
+    command = (
+        f"PYTHONPATH=tests:docs/scripts python -m gearidae_pages.stress --runs {len(outcomes)} --seed {seed}"
+    )
     lines = [
         "# Stress run",
         "",
-        f"`{command}` on {day.isoformat()}, gearidae {gearidae.__version__}{done}.",
+        f"`{command}` on {day.isoformat()}, gearidae {gearidae.__version__}.",
         "",
         _PURPOSE,
         "",
@@ -167,7 +164,7 @@ def page(outcomes: Sequence[Outcome], seed: int, day: date, runs: int | None = N
         "|---|---|---|---|---|---|",
         *map(_row, worst(outcomes)),
         "",
-        f"`gearidae_bench.wide_scenes.wide_scene({seed}, scene)` generates any of these scenes again.",
+        f"`wide_scene({seed}, scene)` in `tests/reference/random_scenes.py` generates any of these scenes again.",
         "",
         _FURTHER,
         "",
@@ -178,3 +175,29 @@ def page(outcomes: Sequence[Outcome], seed: int, day: date, runs: int | None = N
 def _row(o: Outcome) -> str:
     numbers = f"{o.rtol:.1e} | {o.error:.1e} | {o.imbalance:.1e}"
     return f"| {o.number} | {o.status} | {numbers} | {o.complaint or o.message} |"
+
+
+def _run(seed: int, group: range) -> list[Outcome]:
+    return [draw_and_run(seed, number) for number in group]
+
+
+def main() -> None:
+    """Run scenes in a process per core, and write the page."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
+    parser.add_argument("--runs", type=int, default=2000)
+    parser.add_argument("--seed", type=int, default=1)
+    asked, outcomes = parser.parse_args(), []
+    # scenes that share a surface stay together: its force law takes longer than most of the runs
+    groups = [
+        range(k, min(k + SCENES_PER_SURFACE, asked.runs)) for k in range(0, asked.runs, SCENES_PER_SURFACE)
+    ]
+    with own_executor(os.cpu_count() or 1, len(groups), releases_gil=False) as executor:
+        work = partial(_run, asked.seed)
+        for some in map(work, groups) if executor is None else executor.map(work, groups):
+            outcomes += some
+            sys.stderr.write(f"\r{len(outcomes)} scenes")
+    _PAGE.write_text(page(outcomes, asked.seed, datetime.now(UTC).date()))
+
+
+if __name__ == "__main__":
+    main()
