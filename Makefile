@@ -42,19 +42,21 @@ warm: $(VENV)/installed-dev
 	$(BIN)/gearidae compile
 
 # The short suite: both drivers, scenes, archives, pictures and the command line.
-SHORT := -q -n 2 --dist loadfile --no-loadscope-reorder \
-    tests/engine/test_backends.py tests/engine/test_compiled_once.py tests/scene tests/archive/test_dataset.py tests/archive/test_netcdf.py \
+# In one process, which compiles the solver once; two of these suites run side by side in `.ci/versions`.
+SHORT := -q \
+    tests/engine/test_backends.py tests/engine/test_compiled_once.py tests/engine/test_indices.py tests/scene tests/archive/test_dataset.py tests/archive/test_netcdf.py \
     tests/archive/test_lock.py tests/analysis/test_measured.py \
     tests/cli/test_values.py tests/cli/test_session.py tests/plot/test_plot.py tests/report/test_report.py
 
-# The warning is one that numpy itself switches off.
+# Compiled with a check of every index, as this environment compiles the solver for nothing else. The warning is one that
+# numpy itself switches off.
 test-lowest: $(LOWEST)/installed
-	$(LOWEST)/$(SCRIPTS)/python -m pytest -W "ignore:numpy.ndarray size changed:RuntimeWarning" $(SHORT)
+	NUMBA_BOUNDSCHECK=1 $(LOWEST)/$(SCRIPTS)/python -m pytest -p no:cacheprovider -W "ignore:numpy.ndarray size changed:RuntimeWarning" $(SHORT)
 
 # The main job first: compiled code that it makes is taken from the cache by the tests.
 test-newest: $(NEWEST)/installed-test
 	$(MAKE) run VENV=$(NEWEST) PYTHON=$(NEWEST_PYTHON)
-	$(NEWEST)/$(SCRIPTS)/python -m pytest $(SHORT)
+	$(NEWEST)/$(SCRIPTS)/python -m pytest -p no:cacheprovider $(SHORT)
 
 lint: $(VENV)/installed-dev
 	$(BIN)/ruff check .
@@ -72,7 +74,7 @@ bench: $(VENV)/installed
 	PYTHONPATH=benchmarks $(BIN)/python benchmarks/make_page.py
 
 stress: $(VENV)/installed
-	PYTHONPATH=benchmarks $(BIN)/python -m gearidae_bench --stress -o out/stress
+	PYTHONPATH=tests:docs/scripts $(BIN)/python -m gearidae_pages.stress
 
 clean:
 	rm -rf $(VENV) $(LOWEST) $(NEWEST) out docs/_build docs/reference/generated build dist .mypy_cache .pytest_cache .ruff_cache .hypothesis
@@ -94,11 +96,11 @@ $(VENV)/installed-dev: $(VENV)/installed
 
 $(NEWEST)/installed-test: pyproject.toml
 	$(MAKE) $(NEWEST)/installed VENV=$(NEWEST) PYTHON=$(NEWEST_PYTHON)
-	$(NEWEST)/$(SCRIPTS)/python -m pip install --quiet --disable-pip-version-check pytest pytest-xdist hypothesis mpmath
+	$(NEWEST)/$(SCRIPTS)/python -m pip install --quiet --disable-pip-version-check pytest hypothesis mpmath
 	touch $@
 
 $(LOWEST)/installed: pyproject.toml tests/lowest.txt
 	$(PYTHON) -m venv $(LOWEST)
 	$(LOWEST)/$(SCRIPTS)/python -m pip install --quiet --disable-pip-version-check --constraint tests/lowest.txt \
-	    --editable . pytest pytest-xdist hypothesis mpmath
+	    --editable . pytest hypothesis mpmath
 	touch $@

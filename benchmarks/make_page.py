@@ -1,9 +1,9 @@
-"""Measure everything and renew the benchmark's page: ``python benchmarks/make_page.py [--quick | --tables | --long]``.
+"""Measure everything and renew the benchmark's page: ``python benchmarks/make_page.py [--quick | --tables | PART]``.
 
-Runs the whole benchmark (some twenty minutes), writes ``benchmarks/results/``, replaces the tables between the markers
+Runs the whole benchmark (some fifty minutes), writes ``benchmarks/results/``, replaces the tables between the markers
 of ``docs/benchmarks.md`` and the pictures ``docs/images/work_precision_*.png``. ``--quick`` measures little, to see
-that it works; ``--tables`` only writes the page again from the last results; ``--long`` only lets a million teeth pass
-(some minutes) and renews the table about that.
+that it works; ``--tables`` only writes the page again from the last results. A part alone: ``--long`` lets a million
+teeth pass (some minutes), ``--start-stop`` measures start-ups and brakings (half an hour).
 """
 
 from __future__ import annotations
@@ -14,6 +14,8 @@ from pathlib import Path
 from gearidae_bench import Result, Settings, find_scenes, run_benchmark
 from gearidae_bench.files import write_result
 from gearidae_bench.long import long_page, measure_long
+from gearidae_bench.start_stop import StartStop, measure_start_stop, start_stop_scenes
+from gearidae_bench.start_stop_table import start_stop_page
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "benchmarks.md"
@@ -27,16 +29,31 @@ def main(arguments: list[str]) -> None:
         (RESULTS / "long.md").write_text(long_page(parts))
         _insert("long", RESULTS / "long.md")
         return
+    if "--start-stop" in arguments:
+        _start_stop(measure_start_stop(start_stop_scenes(), report=_say))
+        return
     if "--tables" in arguments:
+        _start_stop(StartStop.load(RESULTS / "start_stop.json"))
         result = Result.load(RESULTS / "benchmark.json")
     else:
         quick = "--quick" in arguments
         settings = Settings(rounds=2, longest=0.5, share=0.5, every=3) if quick else Settings()
-        result = run_benchmark(
-            find_scenes(()), settings, beyond=not quick, report=lambda words: sys.stderr.write(f"{words}\n")
-        )
+        result = run_benchmark(find_scenes(()), settings, beyond=not quick, report=_say)
+        if not quick:
+            _start_stop(measure_start_stop(start_stop_scenes(), report=_say))
     write_result(result, RESULTS, PAGE.parent / "images")
     _insert("measured", RESULTS / "benchmark.md")
+
+
+def _say(words: str) -> None:
+    sys.stderr.write(f"{words}\n")
+
+
+def _start_stop(result: StartStop) -> None:
+    """Keep what was measured of start-ups and brakings, and renew their tables."""
+    result.save(RESULTS / "start_stop.json")
+    (RESULTS / "start_stop.md").write_text(start_stop_page(result))
+    _insert("start and stop", RESULTS / "start_stop.md")
 
 
 def _insert(name: str, source: Path) -> None:

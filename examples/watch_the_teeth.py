@@ -1,6 +1,6 @@
 """What do the teeth do while the gear is held back?
 
-The pairs of teeth of a run, reconstructed from its archive: their gaps, forces and states at a time, as numbers, as a
+The pairs of teeth of a run, which is repeated for it: their gaps, forces and states at a time, as numbers, as a
 picture and as a moving one.
 """
 

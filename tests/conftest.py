@@ -58,8 +58,8 @@ def end_early(monkeypatch):
     """Let every run end before its time: after a share of its output, by Ctrl-C or by chatter."""
 
     def arrange(status, share=0.5):
-        def cut(problem, rtol, samples, backend, statistics, resume=None):
-            blocks = list(whole(problem, rtol, samples, backend, statistics, resume))
+        def cut(problem, rtol, samples, backend, statistics, *options):
+            blocks = list(whole(problem, rtol, samples, backend, statistics, *options))
             rows = np.concatenate([block.rows for block in blocks])
             events = np.concatenate([block.events for block in blocks])
             kept = int(share * len(rows))

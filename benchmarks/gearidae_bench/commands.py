@@ -1,4 +1,4 @@
-"""Commands of ``python -m gearidae_bench``: benchmark, stress run, accuracy run and long run, with their pages."""
+"""Commands of ``python -m gearidae_bench``: benchmark, accuracy run and long run, with their pages."""
 
 from __future__ import annotations
 
@@ -23,11 +23,9 @@ from gearidae_bench.accuracy_report import page as accuracy_page
 from gearidae_bench.accuracy_report import quantiles as accuracy_quantiles
 from gearidae_bench.files import write_result
 from gearidae_bench.long import FEWEST_PASSAGES, long_page, measure_long, sound
-from gearidae_bench.stress import Outcome, run_stress
-from gearidae_bench.stress_report import counts, page, quantiles
 from gearidae_bench.tables import ERRORS, beyond_rows, equal_error_rows
 
-__all__ = ["bench_accuracy", "bench_scenes", "bench_stress"]
+__all__ = ["bench_accuracy", "bench_long", "bench_scenes"]
 
 _QUICK_SCENES = ("low_sam", "high_sam", "roller_slow_bare")
 _QUICK = Settings(rounds=3, longest=1.0, share=1.0, every=2)
@@ -94,61 +92,6 @@ def bench_long(passages: int, output: Path | None) -> int:
         (output / "long.md").write_text(text)
         say(f"Report: {output / 'long.md'}")
     return DONE if sound(parts) else UNFINISHED
-
-
-def bench_stress(runs: int, seed: int, jobs: int | None, output: Path | None) -> int:
-    """Run random scenes, print their endings, and write the page if requested.
-
-    What is done when Ctrl-C comes is printed and written all the same.
-
-    Parameters
-    ----------
-    runs, seed : int
-        How many scenes, and which.
-    jobs : int or None
-        Processes to share them; by default one per core.
-    output : Path or None
-        Folder for ``stress.md``.
-
-    Returns
-    -------
-    int
-        Exit code: `UNFINISHED` if any outcome is unsound.
-    """
-    if runs < 1 or seed < 0:
-        raise SceneError("--runs, --seed", f"{runs}, {seed}", "must be at least 1, and at least 0")
-    workers = check_jobs(jobs)
-    outcomes: list[Outcome] = []
-    interrupted = False
-    with Console(stderr=True).status("") as status:
-
-        def note(some: list[Outcome]) -> None:
-            outcomes.extend(some)
-            status.update(f"{len(outcomes)} of {runs} ...")
-
-        try:
-            run_stress(runs, seed, workers, report=note)
-        except KeyboardInterrupt:
-            interrupted = True
-    outcomes.sort(key=lambda outcome: outcome.number)
-    if not outcomes:
-        raise KeyboardInterrupt
-    rows = [(ending, str(number), "") for ending, number in counts(outcomes).items()]
-    rows += [
-        (f"error / rtol of {100 * share:g} %", f"{ratio:.2g}", "at most")
-        for share, ratio in quantiles(outcomes).items()
-    ]
-    show_rows(rows)
-    unsound = [outcome for outcome in outcomes if not outcome.sound]
-    for outcome in unsound:
-        say(f"scene {outcome.number}: {outcome.status} {outcome.message} {outcome.complaint}")
-    if output is not None:
-        output.mkdir(parents=True, exist_ok=True)
-        (output / "stress.md").write_text(page(outcomes, seed, datetime.now(UTC).date(), runs))
-        say(f"Report: {output / 'stress.md'}")
-    if interrupted:
-        raise KeyboardInterrupt(f"{len(outcomes)} of {runs} scenes done")
-    return UNFINISHED if unsound else DONE
 
 
 def bench_accuracy(jobs: int | None, output: Path | None) -> int:

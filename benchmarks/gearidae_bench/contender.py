@@ -15,7 +15,7 @@ from gearidae.engine.model.state import Model
 from gearidae.engine.setup.problem import Problem
 from gearidae.records import Statistics
 from gearidae_bench.loop import run_dop853, run_rk4
-from gearidae_bench.reference import end_of, physical
+from gearidae_bench.reference import alone, end_of, physical
 from gearidae_bench.roots import CALLS, FAILED, STEPS
 
 __all__ = ["TOLERANCES", "Contender", "Outcome", "engine_contenders", "explicit_contenders", "unused"]
@@ -95,8 +95,7 @@ def _engine(backend: str, *, follow: bool = True) -> Callable[[Problem, float, F
     def run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
         statistics = Statistics()
         if not follow:
-            followed = problem.model.scene.follow
-            followed.balance = followed.extremes = followed.passages = 0
+            alone(problem)
         table = np.concatenate(
             [b.rows for b in run_blocks(problem, tolerance, times.size, backend, statistics)]
         )
@@ -137,14 +136,16 @@ def _dop853(problem: Problem, tolerance: float, times: Floats) -> Outcome:
     states, counts = np.empty((times.size, problem.start.size)), np.zeros(4, np.int64)
     atol = tolerance * problem.tolerance_scale
     # ending steps at the kinks was tried and takes twice as long at equal error; where forces jump, steps must
-    land = problem.model.scene.population.flanks > 0
-    run_dop853(problem.model, problem.start, end_of(problem), times, states, atol, bool(land), counts)
+    land = bool(problem.model.scene.population.flanks > 0)
+    m = alone(problem).model
+    run_dop853(m, problem.start, end_of(problem), times, states, atol, land, counts, np.zeros(2))
     return _outcome(problem, states, counts)
 
 
 def _rk4(problem: Problem, step: float, times: Floats) -> Outcome:
     states, counts = np.empty((times.size, problem.start.size)), np.zeros(4, np.int64)
-    run_rk4(problem.model, problem.start, end_of(problem), times, states, step, counts)
+    m = alone(problem).model
+    run_rk4(m, problem.start, end_of(problem), times, states, step, counts, np.zeros(2))
     return _outcome(problem, states, counts)
 
 

@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 from gearidae.engine.events.events import guard
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.record import EVENT_NUMBERS, EVENTS_AT_ONCE
-from gearidae.engine.events.schedule_knots import pass_knot
+from gearidae.engine.events.schedule_knots import next_stop
+from gearidae.engine.followers.balance import note_changes
+from gearidae.engine.model.record_types import AT_REST, HELD_GEAR
 from gearidae.engine.model.state import MATERIALS, Model
 from gearidae_bench.compiling import compiled
 from gearidae_bench.kinks import arm, begin_step, dip_in_step, watch
@@ -26,10 +28,14 @@ from gearidae_bench.roots import (
     EVENTS,
     FAILED,
     GAUSS,
+    LOSS,
+    REST,
     STEPS,
     find_root,
     handle_event,
     pass_events,
+    pass_stops,
+    reach,
 )
 from gearidae_bench.steps import (
     STAGES,
@@ -48,11 +54,20 @@ Floats = NDArray[np.float64]
 Counts = NDArray[np.int64]
 
 
+@compiled()
+def _is_held(m: Model) -> bool:
+    """Whether all that is dry holds the gear at rest."""
+    return bool(m.state.hold == HELD_GEAR or m.state.hold == AT_REST)
+
+
 @compiled(makes_arrays=True)
 def run_rk4(
-    m: Model, y: Floats, end: float, times: Floats, states: Floats, step: float, counts: Counts
+    m: Model, y: Floats, end: float, times: Floats, states: Floats, step: float, counts: Counts, sums: Floats
 ) -> None:
     """Steps of one length, histories followed at each; events are found on the cubic through the step's ends.
+
+    Where the equations jump (stick, slip, a schedule's knot) a step ends and the next one begins anew: between them the
+    steps are equal, and at most `step`.
 
     Parameters
     ----------
@@ -70,50 +85,79 @@ def run_rk4(
         Over tau.
     counts : ndarray of int64, shape (4,)
         Filled in.
+    sums : ndarray, shape (2,)
+        Likewise: time at rest, and the adhesion loss if ``m.scene.follow.balance`` is set.
     """
     n = y.size
     k, dense = np.zeros((STAGES, n)), np.zeros((7, n))
     zero, trial, new, f_new, there = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
     room = np.empty((EVENTS_AT_ONCE, EVENT_NUMBERS))
-    total = math.ceil(end / step)
-    h = end / total
-    sample = 0
-    rates(m, 0.0, y, zero, k[0])
-    before = guard(m, 0.0, y)
-    for number in range(total):
-        t, later = number * h, (number + 1) * h if number + 1 < total else end
-        rk4_step(m, t, y, h, k, zero, trial, new)
+    t, sample, passed = 0.0, 0, 0
+    begin, stop, total, h, before = 0.0, 0.0, 0, 0.0, 0.0
+    while t < end:
+        if passed == total:  # equal steps to the next stop
+            begin, stop, passed = t, next_stop(m), 0
+            total = math.ceil((stop - begin) / step)
+            h = (stop - begin) / total
+            rates(m, t, y, zero, k[0])
+            before = guard(m, t, y)
+        passed += 1
+        later = begin + passed * h if passed < total else stop
+        rk4_step(m, t, y, later - t, k, zero, trial, new)
         rates(m, later, new, zero, f_new)
-        while sample < times.size and times[sample] <= later:
-            hermite_value(y, k[0], new, f_new, h, (times[sample] - t) / h, states[sample])
-            sample += 1
+        held, reached, jumped = _is_held(m), later, False
         fallen = before > 0.0 > guard(m, later, new)
         if fallen:
-            pass_events(CUBIC, m, t, y, h, before, k, zero, trial, new, f_new, dense, there, room, counts)
-            if counts[FAILED] != 0:
-                return
-        accept(m, later, new)
-        y[:] = new
-        if fallen:
-            rates(m, later, y, zero, k[0])
+            reached, jumped = pass_events(
+                CUBIC, m, t, y, h, later, before, k, zero, trial, new, f_new, dense, there, room, counts
+            )
+        while sample < times.size and times[sample] <= reached:
+            hermite_value(y, k[0], new, f_new, h, (times[sample] - t) / h, states[sample])
+            sample += 1
+        sums[REST] += reached - t if held else 0.0
+        counts[STEPS] += 1
+        if jumped:
+            y[:] = there
+            passed = total
         else:
-            k[0] = f_new
-        before = guard(m, later, y)
+            reach(m, later, new, f_new)
+            y[:] = new
+        t = reached
         if not math.isfinite(y[0]):
             counts[FAILED] = -1
+        if counts[FAILED] != 0:
             return
-    counts[STEPS] = total
-    counts[CALLS] = 5 * total
+        if t < end and t >= next_stop(m):
+            pass_stops(m, t, y, room)
+            passed = total
+        if passed < total:
+            if fallen:
+                rates(m, t, y, zero, k[0])
+            else:
+                k[0] = f_new
+            before = guard(m, t, y)
+    counts[CALLS] = 5 * counts[STEPS]
+    if m.scene.follow.balance != 0:
+        sums[LOSS] = m.state.energy.adhesion_loss + note_changes(m, y)[0]
 
 
 @compiled(makes_arrays=True)
 def run_dop853(
-    m: Model, y: Floats, end: float, times: Floats, states: Floats, atol: Floats, land: bool, counts: Counts
+    m: Model,
+    y: Floats,
+    end: float,
+    times: Floats,
+    states: Floats,
+    atol: Floats,
+    land: bool,
+    counts: Counts,
+    sums: Floats,
 ) -> None:
     """Steps of order eight under error control.
 
     Parameters are those of `run_rk4`, with absolute tolerances in place of the step, and with `land`: whether a step
-    shall end at every event and kink, or the history be taken through them at the step's end.
+    shall end at every event and kink, or the history be taken through them at the step's end. Where the equations
+    jump a step ends in any case.
     """
     n = y.size
     k, dense = np.zeros((STAGES, n)), np.zeros((7, n))
@@ -125,41 +169,42 @@ def run_dop853(
     armed = land and arm(m, y, heights)
     before = begin_step(m, 0.0, y, heights, armed)
     while t < end:
-        last = t + h >= end
-        if last:
-            h = end - t
-        error = dop853_step(m, t, y, h, atol, k, zero, trial, new)
+        stop = next_stop(m)
+        cut = t + h >= stop
+        step = stop - t if cut else h
+        error = dop853_step(m, t, y, step, atol, k, zero, trial, new)
         counts[CALLS] += 12
         if not error < 1.0:
-            h *= max(0.2, 0.9 * error**-0.125) if error < math.inf else 0.2
+            h = step * (max(0.2, 0.9 * error**-0.125) if error < math.inf else 0.2)
             rejected = True
             if h < 1e-14 * end:
                 counts[FAILED] = -1
                 return
             continue
         factor = 10.0 if error == 0.0 else min(10.0, 0.9 * error**-0.125)
-        planned = h * (min(factor, 1.0) if rejected else factor)
+        wider = step * (min(factor, 1.0) if rejected else factor)
+        h = max(h, wider) if cut else wider
         rejected = False
-        later = end if last else t + h
+        later = stop if cut else t + step
         after = watch(m, later, new, heights, armed)
-        share = dip_in_step(m, new, h, before, after)
+        share = dip_in_step(m, new, step, before, after)
         if share > 0.0:  # a step that ends there
-            h, last = share * h, False
-            dop853_step(m, t, y, h, atol, k, zero, trial, new)
+            step = share * step
+            dop853_step(m, t, y, step, atol, k, zero, trial, new)
             counts[CALLS] += 12
-            later = t + h
+            later = t + step
             after = watch(m, later, new, heights, armed)
-        fallen = before > 0.0 > after
+        held, jumped, fallen = _is_held(m), False, before > 0.0 > after
         if fallen or (sample < times.size and times[sample] < later):
-            dop853_prepare(m, t, y, h, k, zero, trial, new, dense)
+            dop853_prepare(m, t, y, step, k, zero, trial, new, dense)
             counts[CALLS] += 3
         if fallen and land:
-            h_root = find_root(
+            root = find_root(
                 DOP853,
                 m,
                 t,
                 y,
-                h,
+                step,
                 0.0,
                 before,
                 after,
@@ -175,43 +220,45 @@ def run_dop853(
                 armed,
             )
             counts[EVENTS] += 1
-            last = last and h_root == h
-            later = t + h_root
             # beyond a kink the step saw another law: make it again, up to there
-            h = h_root
-            dop853_step(m, t, y, h, atol, k, zero, trial, new)
+            later = later if root == step else t + root
+            step = root
+            dop853_step(m, t, y, step, atol, k, zero, trial, new)
             counts[CALLS] += 12
             if sample < times.size and times[sample] < later:
-                dop853_prepare(m, t, y, h, k, zero, trial, new, dense)
+                dop853_prepare(m, t, y, step, k, zero, trial, new, dense)
                 counts[CALLS] += 3
+        elif fallen:
+            later, jumped = pass_events(
+                DOP853, m, t, y, step, later, before, k, zero, trial, new, f_new, dense, there, room, counts
+            )
         while sample < times.size and times[sample] < later:
-            dop853_value(y, dense, (times[sample] - t) / h, states[sample])
+            dop853_value(y, dense, (times[sample] - t) / step, states[sample])
             sample += 1
-        if sample < times.size and times[sample] == later:
-            states[sample] = new
+        sums[REST] += later - t if held else 0.0
+        if jumped:
+            y[:] = there
+        else:
+            reach(m, later, new, k[12])
+            y[:] = new
+        while sample < times.size and times[sample] == later:
+            states[sample] = y
             sample += 1
-        if fallen and not land:
-            pass_events(DOP853, m, t, y, h, before, k, zero, trial, new, f_new, dense, there, room, counts)
-        accept(m, later, new)
-        y[:] = new
         t = later
-        if fallen and land:
-            action = handle_event(m, t, y, room)
-            # where forces jump, it is enough that another step begins
-            if action == CHATTER or (action != 0 and m.scene.population.flanks == 0):
-                counts[FAILED] = action
+        if fallen and land and handle_event(m, t, y, room) == CHATTER:
+            counts[FAILED] = CHATTER
         if counts[FAILED] != 0:
             return
-        if fallen:
+        stopped = pass_stops(m, t, y, room)
+        if fallen or stopped:
             rates(m, t, y, zero, k[0])
         else:
             k[0] = k[12]
         armed = land and arm(m, y, heights)
         before = begin_step(m, t, y, heights, armed)
         counts[STEPS] += 1
-        h = planned
-        if last:
-            break
+    if m.scene.follow.balance != 0:
+        sums[LOSS] = m.state.energy.adhesion_loss + note_changes(m, y)[0]
 
 
 @compiled(makes_arrays=True)
@@ -223,15 +270,14 @@ def run_gauss(
     states: Floats,
     scale: Floats,
     tolerance: float,
-    knots: Floats,
     counts: Counts,
 ) -> None:
     """Collocation of order twelve, with a step's end at every event, schedule knot and sample: the reference.
 
     The error of the embedded rule of order six, in units of `scale`, is held to `tolerance`; that of the method is
     far below it between the knots of the force law's tables, where only three derivatives are continuous. A jump of
-    the equations (stick, slip, the schedule's `knots` over tau) only begins another step. Parameters are otherwise
-    those of `run_rk4`.
+    the equations (stick, slip, a schedule's knot) only begins another step. Parameters are otherwise those of
+    `run_rk4`.
     """
     n = y.size
     k, dense = np.zeros((STAGES, n)), np.zeros((7, n))
@@ -247,14 +293,10 @@ def run_gauss(
             states[sample] = y
             sample += 1
             continue
-        knot = m.state.next_knot
-        if knot < knots.size:
-            if knots[knot] <= t:
-                pass_knot(m, t, room, 0)
-                rates(m, t, y, zero, k[0])
-                before = begin_step(m, t, y, heights, armed)
-                continue
-            stop = min(stop, knots[knot])
+        if pass_stops(m, t, y, room):
+            rates(m, t, y, zero, k[0])
+            before = begin_step(m, t, y, heights, armed)
+        stop = min(stop, next_stop(m))
         cut = t + h >= stop
         step = stop - t if cut else h
         error = gauss_step(m, t, y, step, scale, k, zero, trial, new) / tolerance

@@ -25,7 +25,7 @@ from gearidae.engine.motion.residual import jacobian
 from gearidae.engine.setup.problem import Problem
 from gearidae_bench.compiling import compiled
 from gearidae_bench.contender import BROKEN, Contender, Outcome
-from gearidae_bench.reference import end_of, physical
+from gearidae_bench.reference import alone, end_of, physical
 from gearidae_bench.roots import CONTINUE, handle_event
 from gearidae_bench.steps import rates
 
@@ -126,7 +126,7 @@ class _Events:
 
 def _scipy(method: Any, implicit: bool) -> Callable[[Problem, float, Floats], Outcome]:
     def run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
-        located = Located(problem.model)
+        located = Located(alone(problem).model)
         place = located.place
 
         def fun(t: float, y: Floats) -> Floats:
@@ -171,7 +171,7 @@ def _sundials(
     make: Callable[[Problem, int, float, Any], Any], names: tuple[str, ...]
 ) -> Callable[..., Outcome]:
     def run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
-        located, end = Located(problem.model), end_of(problem)
+        located, end = Located(alone(problem).model), end_of(problem)
         place = located.place
 
         def eventsfn(t: float, y: Floats, *rest: Floats) -> None:

@@ -9,12 +9,15 @@ from numpy.typing import NDArray
 
 from gearidae.engine.events.events import guard
 from gearidae.engine.events.histories import accept
+from gearidae.engine.events.schedule_knots import next_stop, pass_knot
+from gearidae.engine.events.sliding import follow_sliding
+from gearidae.engine.followers import joining
 from gearidae.engine.integrate.driver import Output
 from gearidae.engine.integrate.epilogue import handle
-from gearidae.engine.model.state import Model
+from gearidae.engine.model.state import GEARS, Model, W
 from gearidae_bench.compiling import compiled
 from gearidae_bench.kinks import watch
-from gearidae_bench.steps import dop853_value, gauss_step, hermite_value
+from gearidae_bench.steps import dop853_value, gauss_step, hermite_value, rates
 
 __all__ = [
     "CALLS",
@@ -25,11 +28,15 @@ __all__ = [
     "EVENTS",
     "FAILED",
     "GAUSS",
+    "LOSS",
+    "REST",
     "RESTART",
     "STEPS",
     "find_root",
     "handle_event",
     "pass_events",
+    "pass_stops",
+    "reach",
 ]
 
 Floats = NDArray[np.float64]
@@ -46,6 +53,9 @@ steps became too small."""
 
 CONTINUE, RESTART, CHATTER = range(3)
 """What is to be done after an event: go on, begin anew, or give up as events follow without progress in time."""
+
+REST, LOSS = range(2)
+"""Columns of a run's sums: time over tau in which the gear has been held at rest, and the adhesion loss, scaled."""
 
 _ROOT_TOLERANCE = 1e-15  # of the step's end time
 _MOST_TRIALS = 60
@@ -134,11 +144,34 @@ def handle_event(m: Model, t: float, y: Floats, room: Floats) -> int:
     """
     driver = m.work.driver
     driver.step, driver.step_end, driver.events = 0.0, t, 0
-    # the other methods keep none of them
-    m.scene.follow.balance = m.scene.follow.extremes = m.scene.follow.passages = 0
-    if handle(m, t, y, y, Output(room, room, room)):
-        return RESTART
-    return CHATTER if driver.error != 0 else CONTINUE
+    jumped = handle(m, t, y, y, Output(room, room, room))
+    if driver.error != 0:
+        return CHATTER
+    return RESTART if jumped else CONTINUE
+
+
+@compiled()
+def reach(m: Model, t: float, y: Floats, slopes: Floats) -> None:
+    """Follow the histories to an accepted time, and the energy lost in joining if the balance is wanted.
+
+    `slopes` is y' there.
+    """
+    accept(m, t, y)
+    if m.scene.follow.balance != 0 and m.scene.kind == GEARS:
+        m.work.quadrature.gear_acceleration = slopes[W]
+        joining.step(m, t, y, slopes[W])
+
+
+@compiled()
+def pass_stops(m: Model, t: float, y: Floats, room: Floats) -> bool:
+    """Enter the next segments of the schedules that have a knot at t; whether there is one."""
+    passed = False
+    while t < m.scene.end and t >= next_stop(m):
+        pass_knot(m, t, room, 0)
+        if m.scene.friction.on != 0:
+            follow_sliding(m, t, y, room, 0)
+        passed = True
+    return passed
 
 
 @compiled()
@@ -148,6 +181,7 @@ def pass_events(
     t: float,
     y: Floats,
     h: float,
+    later: float,
     before: float,
     k: Floats,
     zero: Floats,
@@ -158,10 +192,14 @@ def pass_events(
     there: Floats,
     room: Floats,
     counts: Counts,
-) -> None:
-    """Take the history through the events within a step, one after the other, and go on from the step's end."""
+) -> tuple[float, bool]:
+    """Take the history through the events within a step that ends `later`, one after the other.
+
+    Returns the step's end, or the time of an event at which the equations jump, with its state in `there`; and whether
+    they do.
+    """
     start = 0.0
-    after = guard(m, t + h, new)
+    after = guard(m, later, new)
     while before > 0.0 > after:
         start = find_root(
             method,
@@ -184,9 +222,14 @@ def pass_events(
             False,
         )
         counts[EVENTS] += 1
-        accept(m, t + start, there)
-        counts[FAILED] = handle_event(m, t + start, there, room)
-        if counts[FAILED] != 0:
-            return
+        if m.scene.follow.balance != 0:
+            rates(m, t + start, there, zero, trial)
+        reach(m, t + start, there, trial)
+        action = handle_event(m, t + start, there, room)
+        if action == CHATTER:
+            counts[FAILED] = action
+        if action != CONTINUE:
+            return t + start, True
         before = guard(m, t + start, there)
-        after = guard(m, t + h, new)
+        after = guard(m, later, new)
+    return later, False

@@ -8,8 +8,8 @@ import xarray as xr
 
 import gearidae as gd
 from gearidae.analysis import assess
-from gearidae_bench.assessment_signals import CONDITIONS, RATE, clean_speeds
-from gearidae_bench.assessment_table import make_maps, make_rows
+from gearidae_pages.assessment_signals import CONDITIONS, RATE, clean_speeds
+from gearidae_pages.assessment_table import make_maps, make_rows
 
 
 @pytest.fixture(scope="module")
@@ -108,8 +108,10 @@ def test_an_offset_that_shifts_the_windows_stays_in_the_interval(maps):
         assert not row.wrong
 
 
-@pytest.mark.parametrize("gain", [0.94, 0.96, 1.04, 1.06])
-@pytest.mark.parametrize("title", TITLES)
+@pytest.mark.parametrize(
+    ("title", "gain"),
+    [("one torque", 0.96), ("one torque", 1.06), ("over torque", 0.94), ("over torque", 1.04)],
+)
 def test_a_wrong_calibration_is_found_by_the_spacing_of_the_impacts(gain, title, maps, speeds):
     """With an error of 4 % 6 of 21 clear verdicts were wrong once, and others said that nothing rings."""
     for fraction in (0.97, 0.9, 0.78, 0.637):
@@ -170,22 +172,23 @@ REDUCED = (
 
 @pytest.mark.slow
 def test_a_part_of_the_table(maps):
-    """Seven conditions, three fractions, three rates: no row with more than one wrong verdict in twenty clear ones."""
+    """Seven conditions, three fractions, two rates: no row with more than one wrong verdict in twenty clear ones."""
     chosen = {name: CONDITIONS[name] for name in REDUCED}
-    rows = make_rows(maps, chosen, fractions=(0.9, 0.637, 0.45), trials=1, seed=19)
+    rows = make_rows(maps, chosen, fractions=(0.9, 0.637, 0.45), rates=(100e3, 10e3), trials=1, seed=19)
     clear = 0
     for name, each in rows.items():
         for title, row in each.items():
-            assert row.records == 9
+            assert row.records == 6
             assert row.share_wrong <= 0.05, (name, title, row.wrong)
             clear += row.clear
     # the verdict must not be safe by never being clear: half of what is above the map and turns is
-    assert clear >= 0.4 * 2 * 6 * len(REDUCED)
+    assert clear >= 0.4 * 2 * 4 * len(REDUCED)
 
 
-@pytest.mark.parametrize("title", TITLES)
 @pytest.mark.parametrize(
-    ("factor", "size"), [(-2.0, 1), (-2.0, 2), (40.0, 1), (0.5, 1)], ids=["back", "two", "spike", "missed"]
+    ("title", "factor", "size"),
+    [("one torque", -2.0, 1), ("one torque", 40.0, 1), ("over torque", -2.0, 2), ("over torque", 0.5, 1)],
+    ids=["back", "spike", "two", "missed"],
 )
 def test_a_spike_is_named_by_its_sample(factor, size, title, maps, speeds):
     """Once the gear was said to turn back, or a clear verdict was wrong: 0.753 to 0.766."""

@@ -1,6 +1,6 @@
 """The same words of a run, however it is sampled and however tightly it is solved.
 
-The long table, with all cases and up to 0.6 s, is `gearidae_bench.verdict_table`.
+The long table, with all cases and up to 0.6 s, is `gearidae_pages.verdict_table`.
 """
 
 from __future__ import annotations

@@ -95,28 +95,18 @@ def test_checksums_that_version_0_1_0_has_written_are_not_part_of_the_dataset(ar
 
 WRONG = {
     "title": np.arange(3),
-    "source": np.frombuffer(b"gearidae", np.uint8),
     "status": 3,
-    "message": np.array([1.5, 2.5]),
-    "backend": 1,
     "rtol": "1e-6",
-    "t_end": np.arange(2.0),
-    "wall_time": "long",
-    "steps": "many",
-    "restarts": np.arange(4),
-    "summary": np.arange(2),
-    "product_version": np.arange(2),
     "scene": json.dumps({"surface": {"roughness": -1}}),
 }
 
 
 @pytest.mark.parametrize("name", WRONG)
-@pytest.mark.parametrize("command", ["info", "plot", "report"])
-def test_an_attribute_of_another_kind_ends_in_one_line(archives, name, command, capfd, monkeypatch, tmp_path):
+def test_an_attribute_of_another_kind_ends_in_one_line(archives, name, capfd, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     with netCDF4.Dataset(archives["single"], "a") as file:
         file.setncattr(name, WRONG[name])
-    assert main([command, "single.nc"]) == 2
+    assert main(["info", "single.nc"]) == 2
     out, err = capfd.readouterr()
     assert out == ""
     assert err.startswith("gearidae: archive = single.nc: ")
@@ -125,7 +115,7 @@ def test_an_attribute_of_another_kind_ends_in_one_line(archives, name, command, 
     assert name in err
 
 
-@pytest.mark.parametrize("name", ["title", "backend", "restarts", "wall_time"])
+@pytest.mark.parametrize("name", ["backend", "wall_time"])
 def test_a_missing_attribute_is_named(archives, name):
     with netCDF4.Dataset(archives["single"], "a") as file:
         file.delncattr(name)

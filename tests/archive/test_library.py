@@ -18,8 +18,8 @@ import xarray as xr
 
 import gearidae as gd
 from gearidae.archive import library, save
-from gearidae.archive.integrity import CheckedStore
 from gearidae.archive.library import LIBRARY, loaded, uninterrupted
+from gearidae.archive.netcdf import CheckedStore
 from gearidae.cli import main
 
 
@@ -110,7 +110,7 @@ scene = gd.preset("roller_slow")
 ds = gd.simulate(scene, samples=11)
 
 def work(number):
-    for _ in range(8):
+    for _ in range(3):
         path = gd.save(ds, Path(sys.argv[1]) / f"{number}.nc", overwrite=True)
         assert gd.open_archive(path).identical(ds)
         gd.simulate(scene, samples=11, archive=path, overwrite=True)

@@ -13,9 +13,9 @@ import gearidae as gd
 from gearidae import engine
 from gearidae.archive import run_summary as account_module
 from gearidae.archive.end_state import end_state_of
-from gearidae.archive.extremes import extremes_of
 from gearidae.archive.run_summary import account
 from gearidae.archive.summary_rows import summary_rows
+from gearidae.archive.totals import extremes_of
 from gearidae.archive.variables import ENERGY_BALANCE
 from gearidae.cli import main
 from gearidae.records.standing import Holding
@@ -199,7 +199,7 @@ def test_the_extremes_of_an_unfinished_run_are_those_of_its_newest_checkpoint(tm
         gd.simulate(scene, archive=tmp_path / "run.nc", on_block=stop)
     ds = cut.value.dataset
     found = extremes_of(ds)
-    expected = engine.kept_at(scene, end_state_of(ds)[0])[1]
+    expected = engine.kept_at(scene, end_state_of(ds.attrs)[0])[1]
     numbers = {name: one for name, one in expected.items() if name not in ("exposures", "standstill_list")}
     assert {name: getattr(found, name) for name in numbers} == pytest.approx(
         numbers, rel=1e-12, abs=0, nan_ok=True

@@ -20,6 +20,7 @@ from gearidae.archive.lock import WriterLock, is_locked
 from gearidae.cli import main
 from gearidae.report import write_report
 from gearidae.runs.kept_runs import folder_beside
+from reference.small_studies import STUDIES
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 1e-3, "run.samples": 11})
 CASE = "teodorescu2009_low_speed"
@@ -45,42 +46,14 @@ POSTERIOR = xr.Dataset(
     {"sam_fraction": ("draw", [0.5, 0.6])},
     attrs={"calibration": json.dumps({"priors": {"coating.sam_fraction": "uniform(0.4, 0.6)"}})},
 )
-STUDIES = {
-    "simulate": lambda path, **how: gd.simulate(LOW, archive=path, **how),
-    "sweep": lambda path, **how: gd.sweep(LOW, FRACTIONS, archive=path, jobs=1, **how),
-    "ensemble": lambda path, **how: gd.studies.ensemble(
-        LOW, {"coating.sam_fraction": "uniform(0.5, 1)"}, 2, archive=path, **how
-    ),
-    "operating_map": lambda path, **how: gd.studies.operating_map(
-        LOW, {**FRACTIONS, "drive.torque": [4e-18]}, archive=path, **how
-    ),
-    "coating_map": lambda path, **how: gd.analysis.coating_map(LOW, [1.0], archive=path, **how),
-    "sticking_threshold": lambda path, **how: gd.studies.sticking_threshold(LOW, archive=path, **how),
-    "life": lambda path, **how: gd.studies.life(
-        LOW, gd.wear.loss_law("adhesion_work", energy=1e-6), archive=path, **how
-    ),
-    "lives": lambda path, **how: gd.studies.lives(
-        LOW,
-        gd.wear.loss_law("adhesion_work", energy=1e-6),
-        {"drive.torque": "uniform(4e-18, 5e-18)"},
-        2,
-        archive=path,
-        **how,
-    ),
-    "calibrate": lambda path, **how: gd.studies.calibrate(
-        LOW,
-        {"coating.sam_fraction": "uniform(0.4, 0.6)"},
-        [gd.studies.Observation(value=True)],
-        archive=path,
-        **how,
-    ),
-    "predict": lambda path, **how: gd.studies.predict(LOW, POSTERIOR, 2, archive=path, **how),
-}
 
 
 def products(single):
     """All that is saved, by its name."""
     return STUDIES | {
+        "simulate": lambda path, **how: gd.simulate(LOW, archive=path, **how),
+        "sweep": lambda path, **how: gd.sweep(LOW, FRACTIONS, archive=path, jobs=1, **how),
+        "predict": lambda path, **how: gd.studies.predict(LOW, POSTERIOR, 2, archive=path, **how),
         "save": lambda path, **how: save(single, path, **how),
         "report": lambda path, **how: write_report(single, path, **how),
         "picture": lambda path, **how: gd.plot.write(matplotlib.figure.Figure(), path, **how),

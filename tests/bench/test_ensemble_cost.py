@@ -24,11 +24,13 @@ def test_parts_add_up_and_the_archive_is_written(tmp_path):
     assert f"{cost.peak:.0f}" in cost_row("short", cost)
 
 
+@pytest.mark.by_hand  # imports in new processes
 def test_processes_that_share_nothing_write_their_parts(tmp_path):
     assert wall_apart(SHORT, 4, 2, tmp_path) > 0.0
     assert [gd.open_archive(tmp_path / f"part_{k}.nc").sizes["member"] for k in range(2)] == [2, 2]
 
 
+@pytest.mark.by_hand
 def test_a_cluster_counts_the_solver_of_its_workers(tmp_path):
     pytest.importorskip("distributed")
     _, local = ensemble_cost(SHORT, 6, 1)

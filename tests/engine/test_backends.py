@@ -21,7 +21,7 @@ SHORT = {
     "roller_fast": None,
     "start_up": 2e-3,
     "braking": 1.5e-4,
-    "alternating": 5e-4,
+    "alternating": 2e-4,
 }
 
 

@@ -22,20 +22,7 @@ from gearidae.records import Statistics
 from reference.damaged import BUDGET, SCENES, UNREADY
 
 WORDS = STATE.itemsize // 8
-WORST = (
-    np.nan,
-    np.inf,
-    -np.inf,
-    -1.0,
-    0.0,
-    1e300,
-    np.int64(2**62).view(np.float64),
-    np.int64(-(2**62)).view(np.float64),
-    np.int64(2**31).view(np.float64),
-)
-STEPS = (-1, 1, 2, 8)
-"""Small changes of what may be an integer."""
-
+WORST = (np.nan, -1.0, 1e300, np.int64(2**62).view(np.float64))
 COMPILING = re.compile(r"compiling .* for this machine: once, .*|.*: \d+ functions? compiled in \d+ s")
 """What the first run on a machine says."""
 
@@ -143,27 +130,6 @@ def at_the_bounds(name, checkpoint):
         yield word, (1e5, -1.0, 0.0)[word % 3], True
 
 
-def damage(name, checkpoint):
-    """Copies with one word changed: of the header, of the state but for most empty histories, and of what follows."""
-    m, y, _ = restored(name, checkpoint)
-    first = HEADER + STATE.fields["history"][1] // 8
-    length = STATE["history"].base.itemsize // 8
-    behind = HEADER + WORDS
-    words = [
-        *range(first),
-        *(first + length * k + j for k in histories(m) for j in range(length)),
-        *range(behind, behind + min(y.size, 8)),
-        *np.linspace(behind + y.size, checkpoint.size - 1, 24, dtype=int).tolist() * int(m.scene.nodes > 0),
-    ]
-    for word in words:
-        values = [*WORST, *((bits(checkpoint)[word : word + 1] + step).view(np.float64)[0] for step in STEPS)]
-        values += [checkpoint[word] * (1.0 + 1e-3)] if np.isfinite(checkpoint[word]) else []
-        for value in values:
-            copy = forged(checkpoint, word, value)
-            if bits(copy)[word] != bits(checkpoint)[word]:
-                yield word, copy
-
-
 def forged(checkpoint, word, value):
     """A copy in which one word is another."""
     copy = checkpoint.copy()
@@ -226,21 +192,6 @@ def test_words_at_their_bounds_end_without_a_signal(name, sound, tmp_path):
             let_through.append((word, copy))
     assert whole_numbers >= 100
     assert len(let_through) >= 200
-    run_on(name, let_through, tmp_path)
-
-
-@pytest.mark.by_hand
-@pytest.mark.parametrize("name", SCENES)
-def test_forged_words_end_without_a_signal(name, sound, tmp_path):
-    """Every word and many values, in two minutes a scene; a forged number gives a wrong run."""
-    let_through, count = [], 0
-    for word, copy in damage(name, sound[name]):
-        count += 1
-        if refused(name, copy):
-            continue
-        assert np.isfinite(copy[HEADER + WORDS :]).all()
-        let_through.append((word, copy))
-    assert count >= 500
     run_on(name, let_through, tmp_path)
 
 

@@ -14,6 +14,7 @@ from gearidae.engine.continuing import end_of
 from gearidae.engine.setup.build import make_problem
 from gearidae.records import Statistics
 from reference.feature_scenes import CHANGES, HALF, SAMPLES, scene_with
+from same import assert_same
 
 TABLE = gd.combinations()
 PAIRS = [
@@ -24,12 +25,15 @@ TRIPLES = [
     ("elastic bodies", "coulomb friction", "coating by place"),
     ("elastic bodies", "coulomb friction", "exposures"),
     ("elastic bodies", "hub friction", "dry resistance"),
+    ("elastic bodies", "coating by place", "radius force"),
+    ("elastic bodies", "coating by place", "maugis asperities"),
     ("attraction", "coulomb friction", "hub friction"),
     ("attraction", "shear friction", "independent coatings"),
     ("attraction", "coulomb friction", "radius force"),
     ("attraction", "coulomb friction", "discrete asperities"),
     ("discrete asperities", "shear friction", "exposures"),
     ("shear friction", "maugis asperities", "hub friction"),
+    ("coulomb friction", "hub friction", "discrete asperities"),
     ("coulomb friction", "static error", "mesh damping"),
     ("hub friction", "held speed", "dry resistance"),
     ("pin friction", "hub friction", "coulomb friction"),
@@ -38,6 +42,9 @@ TRIPLES = [
 WHOLE = {"run.duration": 2 * HALF, "run.samples": 2 * SAMPLES - 1, "run.checkpoints": [HALF]}
 AGREE = 1e-5
 """Of the range of a sample, at a tolerance of 1e-8."""
+HALF_A_STEP = 5e-3
+"""Of the largest exposure: a step belongs to one place, and of some hundred steps at a place the first and the last are
+half out."""
 
 
 @pytest.mark.parametrize("feature", [*CHANGES, "no friction"])
@@ -63,8 +70,10 @@ def friction_loss(balance):
     )
 
 
-def rows_of(blocks):
-    return np.concatenate([block.rows for block in blocks])
+def exposures_of(run):
+    """Exposures by flank, tooth, quantity and place; the largest of each quantity."""
+    table = np.array(run.extremes.exposures).reshape(2, 19, -1, CHANGES["exposures"]["run.exposures"])
+    return table, table.max(axis=(0, 1, 3), keepdims=True)
 
 
 @pytest.mark.parametrize("features", [*PAIRS, *TRIPLES], ids=" + ".join)
@@ -85,14 +94,24 @@ def test_features_go_together(features):
                 portable.samples[name], values, rtol=0.0, atol=AGREE * extent, err_msg=name
             )
 
+    if "exposures" in features:
+        (ours, largest), (theirs, _) = exposures_of(native), exposures_of(portable)
+        assert np.all(np.abs(theirs - ours) <= HALF_A_STEP * largest)
+
     # resumed from the checkpoint in the middle, and continued from a run of the first half
     blocks = list(run_blocks(make_problem(whole), 1e-8, 2 * SAMPLES - 1, "native", Statistics()))
     (cut, *_) = [k for k, block in enumerate(blocks) if block.checkpoint is not None]
     assert cut < len(blocks) - 1
-    resumed = run_blocks(
-        make_problem(whole), 1e-8, 2 * SAMPLES - 1, "native", Statistics(), blocks[cut].checkpoint
+    resumed = list(
+        run_blocks(make_problem(whole), 1e-8, 2 * SAMPLES - 1, "native", Statistics(), blocks[cut].checkpoint)
     )
-    np.testing.assert_array_equal(rows_of([*blocks[: cut + 1], *resumed]), rows_of(blocks))
+    for name in ("rows", "events", "passages"):
+        parts = ([*blocks[: cut + 1], *resumed], blocks)
+        np.testing.assert_array_equal(
+            *(np.concatenate([getattr(one, name) for one in part]) for part in parts)
+        )
+    assert_same(resumed[-1].balance, blocks[-1].balance)
+    assert_same(resumed[-1].extremes, blocks[-1].extremes)
     first = solve(scene, backend="native")
     second = solve(scene, backend="native", start=end_of(scene, first.checkpoint, 0.0))
     for name, values in native.samples.items():

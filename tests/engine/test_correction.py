@@ -35,10 +35,10 @@ def test_it_solves_the_linear_equations(case, at_rest, depth, moves, cj):
     """Elimination loses a few digits where cj is not large against the slopes: bounded by the condition number."""
     problem = PROBLEMS[case]
     m, n = problem.shortened(1.0).model, problem.start.size  # a copy
-    if at_rest and n == 4:
+    if at_rest:
         m.scene.dry, m.state.slip = 1, 0.0
     y = problem.start + 0.1 * np.array(moves[:n])
-    y[U] = depth if n == 2 else m.scene.half_backlash - depth
+    y[U] = m.scene.clearance[0] - depth
     yp = np.array(moves[4 : 4 + n])
     delta, right, dense = np.empty(n), np.empty(n), np.empty(n * n)
     frequency = correct(m, 0.3, cj, y, yp, delta)
@@ -52,14 +52,7 @@ def test_it_solves_the_linear_equations(case, at_rest, depth, moves, cj):
         delta, expected, rtol=0, atol=100 * 2.3e-16 * condition * np.abs(expected).max()
     )
     # the frequencies of the motion are the roots of the Jacobian in cj
-    rates = matrix - cj * _masses(n)
-    roots = np.linalg.eigvals(np.linalg.solve(_masses(n), -rates))
+    masses = np.eye(n)  # dF/dy' of a motion
+    masses[V, W] = 1.0
+    roots = np.linalg.eigvals(np.linalg.solve(masses, cj * masses - matrix))
     assert np.abs(roots).max() ** 2 <= 1.5 * frequency + 1e-9
-
-
-def _masses(n):
-    """dF/dy' of a motion."""
-    masses = np.eye(n)
-    if n == 4:
-        masses[V, W] = 1.0
-    return masses

@@ -7,7 +7,7 @@ import pytest
 
 import gearidae as gd
 from balances import assert_closes
-from gearidae.archive.energy import imbalance_of
+from gearidae.archive.totals import imbalance_of
 from gearidae.engine import solve
 from gearidae.engine.backend import run_blocks
 from gearidae.engine.followers import in_turn

@@ -95,16 +95,6 @@ def test_places_only_divide():
     assert float(none.final_speed) == float(few.final_speed) == float(many.final_speed)
 
 
-def test_both_drivers_agree():
-    scene = RUBBING.replace({"run.duration": 1e-5, "run.rtol": 1e-8})
-    native, portable = (gd.simulate(scene, backend=b) for b in ("native", "sksundae"))
-    np.testing.assert_allclose(sums(portable), losses(portable), rtol=1e-12, atol=0)
-    # a step belongs to one place, and some hundred of them pass one: the first and the last are half out
-    ours, other = native.friction_work.values, portable.friction_work.values
-    np.testing.assert_allclose(ours, other, rtol=0, atol=5e-3 * ours.max())
-    assert sums(native)[0] == pytest.approx(sums(portable)[0], rel=1e-3, abs=0)
-
-
 @pytest.mark.parametrize("changes", [{}, {"gears.hub_friction": 0.3, "gears.gear_hub_radius": "6 um"}])
 def test_flanks_without_friction_keep_no_work_of_it(changes):
     ds = gd.simulate(SMOOTH.replace(changes))
@@ -115,12 +105,11 @@ def test_flanks_without_friction_keep_no_work_of_it(changes):
     assert len(rubbing.extremes.exposures) == 2 * 19 * ROWS.per_tooth(rubs=True) * 8
 
 
-@pytest.mark.parametrize("name", ["one coefficient", "asperities"])
-def test_archives_and_resumed_runs_have_it(name, tmp_path, monkeypatch):
+def test_archives_and_resumed_runs_have_it(tmp_path, monkeypatch):
     from gearidae.engine.integrate import native
 
     monkeypatch.setattr(native, "BLOCK_STEPS", 500)
-    scene = SMOOTH.replace(SCENES[name] | {"run.checkpoints": [2e-5, 4e-5]})
+    scene = RUBBING.replace({"run.checkpoints": [2e-5, 4e-5]})
     whole, path, asked = gd.simulate(scene), tmp_path / "run.nc", itertools.count()
 
     def stop(block):

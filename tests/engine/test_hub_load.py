@@ -260,9 +260,9 @@ def largest_push(m, y, rng):
 
 @pytest.mark.parametrize("with_joints", [False, True])
 def test_a_train_rests_if_and_only_if_frictions_balance_it(with_joints):
-    """50 drawn trains: the largest push that an optimisation finds is held but for 1e-8, and no more than it."""
+    """20 drawn trains: the largest push that an optimisation finds is held but for 1e-8, and no more than it."""
     rng, trains = np.random.default_rng(5), 0
-    while trains < 50:
+    while trains < 20:
         m, y = drawn(rng, with_joints=with_joints)
         edge = largest_push(m, y, rng)
         if not math.isfinite(edge):
@@ -294,9 +294,9 @@ def test_what_holds_a_train_does_not_depend_on_what_it_was_held_by():
 
 @pytest.mark.parametrize("with_joints", [False, True])
 def test_a_train_that_begins_to_move_agrees_with_its_directions_of_slip(with_joints):
-    """What is held is within its limit, and what slips goes on as the accelerations say, in 300 drawn trains."""
+    """What is held is within its limit, and what slips goes on as the accelerations say, in 120 drawn trains."""
     rng, moving = np.random.default_rng(7), 0
-    for _ in range(300):
+    for _ in range(120):
         m, y = drawn(rng, with_joints=with_joints)
         m.scene.torque[0].constant = rng.uniform(-1.0, 8.0) * float(m.scene.torque[1].constant)
         state, rates = y.copy(), np.zeros_like(y)
@@ -318,13 +318,13 @@ def test_a_train_that_begins_to_move_agrees_with_its_directions_of_slip(with_joi
             slide = int(m.state.history[int(one["history"])].slide)
             if slide in (-1, 1):
                 assert slide * slides >= -1e-9 * size
-    assert moving > 100
+    assert moving > 40
 
 
 def test_a_rolling_pair_that_is_let_go_slides_as_its_speed_goes_on():
     """Just beyond the drive that friction holds: the levers change along the path, and the sliding speed with them."""
     rng, sliding = np.random.default_rng(9), 0
-    while sliding < 30:
+    while sliding < 15:
         m, y = drawn(rng)
         forces_at_shafts(m, 0.0, y)
         which = int(np.argmax(m.work.notes.pair["limit"][: m.work.notes.count]))
@@ -369,7 +369,7 @@ def slide_at(m, y, drive, which):
 # -- runs ------------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("backend", "method"), [("native", "auto"), ("native", "bdf"), ("sksundae", "auto")])
+@pytest.mark.parametrize(("backend", "method"), [("native", "auto"), ("sksundae", "auto")])
 def test_a_load_that_passes_zero_closes_the_balance(backend, method):
     """One pair whose force turns round again and again: the modulus of the load has a corner at each passage."""
     scene = LOW.replace(
@@ -413,8 +413,8 @@ def drawn_run(seed, method="auto"):
     return HIGH.replace(changes)
 
 
-DRAWN = [(seed, "bdf" if seed % 4 == 3 else "auto") for seed in range(8)]
-NEAR_ZERO = [(seed, method) for seed in (91, 157, 230, 285) for method in ("auto", "bdf")]
+DRAWN = [(seed, "bdf" if seed % 4 == 3 else "auto") for seed in range(4)]
+NEAR_ZERO = [(91, "auto"), (157, "bdf"), (230, "auto"), (285, "bdf")]
 """Whose loads pass zero or close by: pairs of the coast flank without friction, and one that turns round beside another
 that hardly pushes."""
 

@@ -28,7 +28,7 @@ def test_slopes_of_any_law_are_those_of_its_projection(coast, beyond):
     m = make_problem(HIGH).model
     number, along = 0, m.scene.contact_ratio + 0.03 if beyond else 0.4
     phase = m.scene.coast_phase - along if coast else along
-    start = np.array([(m.scene.half_backlash - 2.0) * (1 - 2 * coast), 0.3, phase, 10.0])
+    start = np.array([(m.scene.clearance[0] - 2.0) * (1 - 2 * coast), 0.3, phase, 10.0])
 
     def mesh(y):
         pair = pair_state(m, coast, number, y)

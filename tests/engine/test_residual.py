@@ -53,8 +53,8 @@ def test_jacobian_is_the_derivative(name):
     problem = make_problem(scene)
     m, n = problem.model, problem.start.size
     y = problem.start.copy()
-    y[U] = 4.0 if n == 2 else m.scene.half_backlash - 4.0
-    y[V] = -0.1 if n == 2 else 0.1  # the way it was going: within a turning step the Jacobian is a guess
+    y[U] = m.scene.clearance[0] - 4.0
+    y[V] = 0.1  # the way it was going: within a turning step the Jacobian is a guess
     yp, cj = np.linspace(0.1, 0.4, n), 2.5
     ours = np.empty(n * n)
     jacobian(m, 0.3, cj, y, ours)

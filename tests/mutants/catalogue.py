@@ -273,7 +273,7 @@ MUTANTS = (
     ),
     Mutant(
         "an energy balance out of its bound that nothing is said of",
-        "archive/energy.py",
+        "archive/totals.py",
         "if not out_by > 1.0:",
         "if not out_by > 1e9:",
         ("runs/test_imbalance.py",),

@@ -1,15 +1,8 @@
-"""A small scene of every kind, run by both drivers; what went wrong is on stderr.
+"""A small scene of every kind."""
 
-``NUMBA_BOUNDSCHECK=1 python small_scenes.py``.
-"""
-
-import sys
-
-import numba
 import numpy as np
 
 import gearidae as gd
-from gearidae.engine import solve
 
 __all__ = ["SCENES"]
 
@@ -31,25 +24,3 @@ SCENES = {
     "elastic roller": _ROLLER.replace({"contact.bodies": "elastic", "run.duration": 1e-6}),
     "elastic teeth": _BY_PLACE.replace({"contact.bodies": "elastic", "run.duration": 5e-7}),
 }
-
-
-@numba.njit
-def _pick(numbers, k):
-    return numbers[k]
-
-
-def checked():
-    """Whether an index beyond an array is an error here."""
-    try:
-        _pick(np.zeros(3), 5)
-    except IndexError:
-        return True
-    return False
-
-
-if __name__ == "__main__":
-    sys.stdout.write(f"checked {checked()}\n")
-    for name, scene in SCENES.items():
-        for backend in ("sksundae", "native"):
-            sys.stdout.write(f"{name}, {backend}: {solve(scene, backend=backend).status}\n")
-            sys.stdout.flush()

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import base64
+import json
 
 import numpy as np
 import pytest
 
 import gearidae as gd
 from gearidae.archive.select import run_scene
+from gearidae.populations.met_flank import contact_arc, met_flank
 from gearidae.records import Flank
 from gearidae.report import build_report
 from gearidae.report.teeth import FRAME, PAIR, pack_teeth
 from gearidae.studies._tooth_contacts import tooth_contacts
-from gearidae.studies.joined_asperities import contact_arc, met_flank
 from reference.browser import CHROMIUM, looked_at
 
 SCENE = gd.preset("teodorescu2009_low_speed")
@@ -159,6 +160,19 @@ def test_asperities_of_a_population_are_its_own(specimen):
             assert numbers["arc"] == pytest.approx(contact_arc(scene, one.place), rel=1e-6)
             shown += len(which)
     assert shown == len(joined)
+
+
+def test_a_page_says_why_the_teeth_are_not_shown(single, swept):
+    long = single.assign_attrs(wall_time=3600.0)
+    assert "the scene must run again, which takes about 60 min" in build_report(long)
+    assert 'id="teeth-viewer"' in build_report(long, teeth=True)
+    page = build_report(single, teeth=False)
+    assert "Teeth in mesh" not in page
+    changes = {"coating.sam_fraction": 0.5, "drive.torque": 5e-18}
+    other = single.assign_attrs(scene=json.dumps(SCENE.replace(changes).to_dict()))
+    page = build_report(other)
+    assert 'id="teeth-viewer"' not in page
+    assert "cannot be repeated here" in page
 
 
 def test_rollers_have_no_teeth():

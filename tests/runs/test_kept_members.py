@@ -28,7 +28,7 @@ def shoot(done, total):
     if len(list(pathlib.Path(sys.argv[1] + ".runs").glob("*.npz"))) >= 3:
         os.kill(os.getpid(), signal.SIGKILL)
 
-gd.studies.ensemble(low, {"coating.sam_fraction": "uniform(0.4, 1)"}, 8, jobs=int(sys.argv[2]),
+gd.studies.ensemble(low, {"coating.sam_fraction": "uniform(0.4, 1)"}, 8, jobs=2,
                     archive=sys.argv[1], progress=shoot)
 """
 
@@ -61,11 +61,10 @@ def test_damaged_members_are_computed_again(cut_off):
     assert list(cut_off.parent.iterdir()) == [cut_off]
 
 
-@pytest.mark.parametrize("jobs", [1, 2])
-def test_a_killed_ensemble_goes_on_and_equals_one_that_was_not(tmp_path, monkeypatch, jobs):
+def test_a_killed_ensemble_goes_on_and_equals_one_that_was_not(tmp_path, monkeypatch):
     """The process shoots itself as soon as three members are kept; none of these is computed again."""
     archive = tmp_path / "out.nc"
-    shot = subprocess.run([sys.executable, "-c", SHOT, archive, str(jobs)], capture_output=True, check=False)
+    shot = subprocess.run([sys.executable, "-c", SHOT, archive], capture_output=True, check=False)
     assert shot.returncode == -signal.SIGKILL, shot.stderr
     whole = gd.studies.ensemble(LOW, VARY, 8, jobs=1)
     computed, solve = [], engine.solve

@@ -11,7 +11,7 @@ import pytest
 import gearidae as gd
 from gearidae.runs.plausibility import doubts
 from gearidae.runs.validity import validity_attribute
-from gearidae_bench.random_scenes import random_scene
+from reference.random_scenes import random_scene
 
 CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
 LOW = gd.preset("teodorescu2009_low_speed")

@@ -16,11 +16,18 @@ CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
 LOW = gd.preset("teodorescu2009_low_speed")
 
 
+LONG = {"alternating"}
 SETTLING = {"inspection"}
 """Cases whose teeth stop vibrating for most of the run, so that it takes fewer steps than the estimate."""
 
 
-@pytest.mark.parametrize("case", [pytest.param(path, id=path.stem) for path in CASES])
+@pytest.mark.parametrize(
+    "case",
+    [
+        pytest.param(path, id=path.stem, marks=[pytest.mark.by_hand] if path.stem in LONG else [])
+        for path in CASES
+    ],
+)
 def test_steps_of_the_shipped_cases_within_a_factor_of_three(case):
     scene = gd.load_case(case)
     ratio = run_time(scene).steps / int(gd.simulate(scene).steps)
@@ -28,8 +35,8 @@ def test_steps_of_the_shipped_cases_within_a_factor_of_three(case):
     assert ratio < 3.0 or case.stem in SETTLING
 
 
-@pytest.mark.parametrize("fraction", [0.8, 0.6, 0.5])
-@pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-9])
+@pytest.mark.parametrize("fraction", [0.8, 0.5])
+@pytest.mark.parametrize("rtol", [1e-4, 1e-9])
 def test_steps_of_worn_teeth_and_other_tolerances_within_a_factor_of_three(fraction, rtol):
     scene = LOW.replace({"coating.sam_fraction": fraction, "run.rtol": rtol})
     assert 1.0 / 3.0 < run_time(scene).steps / int(gd.simulate(scene).steps) < 3.0
@@ -46,7 +53,7 @@ def test_rough_as_a_tooth_takes_days():
     assert 30.0 < hours < 270.0
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize("fraction", [0.3, 0.8])
 def test_steps_on_real_asperities_within_a_factor_of_three(seed, fraction):
     scene = gd.preset("teodorescu2009").replace(

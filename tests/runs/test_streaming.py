@@ -28,7 +28,7 @@ from gearidae.runs.kept_validity import largest_force
 from gearidae.runs.validity import validity_attribute
 
 LOW = gd.preset("teodorescu2009_low_speed").replace(
-    {"coating.sam_fraction": 0.5, "run.duration": 0.01, "run.samples": 201}
+    {"coating.sam_fraction": 0.5, "run.duration": 0.005, "run.samples": 201}
 )
 START_UP = gd.load_case(Path(__file__).parents[2] / "cases" / "start_up.toml")
 HANGS = 60.0
@@ -140,7 +140,7 @@ def test_killed_within_any_write_the_archive_is_sound_and_the_run_goes_on(path):
         die_at_write(number)
         simulate(path, resume=True)
 
-    for number in (0, 1, 3, 40, 7, 111, 66, 23, 90, 14, 5, 2):
+    for number in (0, 1, 3, 40, 7, 66, 14, 2):
         assert end_of(child(killed, number)) == -signal.SIGKILL
         if path.exists():
             with xr.open_dataset(path) as ds:
@@ -176,13 +176,13 @@ def kill_again_and_again(path, scene, backend, kills, share):
 @pytest.mark.usefixtures("many_small_blocks")
 def test_killed_at_five_random_instants_and_resumed_is_the_same_run(path):
     # if this process has to wait the run may reach its end before the fifth
-    assert 2 <= kill_again_and_again(path, LOW.replace({"run.duration": 0.015}), "sksundae", 5, 0.2) <= 5
+    assert 2 <= kill_again_and_again(path, LOW.replace({"run.duration": 0.01}), "sksundae", 5, 0.2) <= 5
 
 
 @pytest.mark.by_hand
 @pytest.mark.usefixtures("many_small_blocks")
 def test_killed_at_fifteen_random_instants_and_resumed_is_the_same_run(path):
-    """As many as it takes to hit all that a run does; the benchmark's `--kills` repeats it as often as one likes."""
+    """As many as it takes to hit all that a run does."""
     scene = LOW.replace({"run.duration": 0.1, "run.samples": 801})
     assert kill_again_and_again(path, scene, "sksundae", 15, 0.05) == 15
 
@@ -191,8 +191,8 @@ def test_killed_at_fifteen_random_instants_and_resumed_is_the_same_run(path):
 def test_start_up_killed_at_random_instants_is_the_same_run(path, monkeypatch):
     """The native driver takes a checkpoint about every fifth of a second, which is compiled in."""
     monkeypatch.setattr(growing, "CHECKPOINT_SECONDS", 0.0)
-    scene = START_UP.replace({"run.duration": 0.03})
-    assert kill_again_and_again(path, scene, "native", 50, 0.4) > 2
+    scene = START_UP.replace({"run.duration": 0.015})
+    assert kill_again_and_again(path, scene, "native", 50, 0.5) > 2
 
 
 # -- read while it runs --------------------------------------------------------------------------------------
@@ -262,7 +262,7 @@ def interrupt_after(share):
 @pytest.mark.usefixtures("many_small_blocks")
 def test_interrupted_and_resumed_is_the_same_run(path):
     whole = gd.simulate(LOW, backend="sksundae")
-    for share in (0.2, 0.5, 0.9):
+    for share in (0.2, 0.6):
         with pytest.raises(gd.errors.Interrupted) as caught:
             simulate(path, resume=True, progress=interrupt_after(share))
         part = assert_sound(path, whole)
@@ -467,14 +467,14 @@ def high_water():
 
 
 def test_memory_does_not_depend_on_the_length(path, monkeypatch):
-    """A run of 96 MB takes as much as one of 3 MB, within the size of a few buffers (8 MB each)."""
+    """A run of 64 MB takes as much as one of 3 MB, within the size of a few buffers (8 MB each)."""
     monkeypatch.setattr(streaming, "open_archive", lambda path: None)  # measured is the run, not its reader
     simulate(path, gd.preset("roller_slow"), "native")
-    short, long = peak_memory(path, 100_001), peak_memory(path, 3_000_001)
+    short, long = peak_memory(path, 100_001), peak_memory(path, 2_000_001)
     assert long < short + 30.0
     monkeypatch.undo()
     with xr.open_dataset(path) as ds:
-        assert ds.nbytes > 90e6
+        assert ds.nbytes > 60e6
 
 
 @pytest.mark.parametrize("archived", [False, True])

@@ -152,5 +152,5 @@ def test_hertzian_asperities_close_the_gap():
 
 @pytest.mark.parametrize("estimate", [effective_mass, steady_speed, resting_gap, natural_frequency])
 def test_a_roller_has_none_of_these(estimate):
-    with pytest.raises(gd.SceneError, match="no gears"):
+    with pytest.raises(gd.SceneError, match="must be a scene with gears"):
         estimate(gd.preset("roller_slow"))

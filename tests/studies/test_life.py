@@ -19,7 +19,7 @@ SHORT = {"cycles": 3, "settle": 1, "starts": 1, "places": 4, "frequency": False}
 
 @pytest.fixture(scope="module")
 def short():
-    return gd.studies.life(LOW, LAW, **SHORT, fraction=0.65)
+    return gd.studies.life(LOW, LAW, **SHORT, fraction=0.69)
 
 
 def test_exposures_of_a_window_are_those_of_its_cycles():
@@ -88,7 +88,7 @@ def test_a_gear_that_stops_sticks():
 
 def test_a_life_follows_its_rate(short):
     assert short.attrs["ending"] == "coverage"
-    assert float(short.coverage[-1, 0]) == pytest.approx(0.65, abs=1e-6)
+    assert float(short.coverage[-1, 0]) == pytest.approx(0.69, abs=1e-6)
     assert (np.diff(short.coverage[:, 0]) < 0.0).all()
     # Q and the work on coated flank give the rate
     expected = short.coverage * short.passage_adhesion_work / 1e-6
@@ -101,7 +101,7 @@ def test_a_life_follows_its_rate(short):
 
 
 def test_ten_times_the_energy_lasts_ten_times_as_long(short):
-    slow = gd.studies.life(LOW, gd.wear.loss_law("adhesion_work", energy=1e-5), **SHORT, fraction=0.65)
+    slow = gd.studies.life(LOW, gd.wear.loss_law("adhesion_work", energy=1e-5), **SHORT, fraction=0.69)
     np.testing.assert_allclose(slow.passages, 10 * short.passages, rtol=1e-4)  # last digits of the states
     np.testing.assert_allclose(slow.coverage, short.coverage, rtol=1e-4)
 
@@ -118,14 +118,14 @@ def test_a_life_that_was_cut_off_is_resumed(short, tmp_path, monkeypatch):
 
     monkeypatch.setattr(sys.modules["gearidae.studies.life_rates"], "run_window", cut)
     with pytest.raises(gd.Interrupted, match="resume") as stopped:
-        gd.studies.life(LOW, LAW, **SHORT, fraction=0.65, archive=path)
+        gd.studies.life(LOW, LAW, **SHORT, fraction=0.69, archive=path)
     kept = gd.studies.open_life(path)
     assert (kept.attrs["ending"], kept.sizes["passages"]) == ("interrupted", 1)
     for ds in (kept, stopped.value.dataset):
         np.testing.assert_array_equal(ds.coverage_loss, short.coverage_loss[:1])
     with pytest.raises(gd.SceneError, match="cut off"):
-        gd.studies.life(LOW, LAW, **SHORT, fraction=0.65, archive=path)
-    resumed = gd.studies.life(LOW, LAW, **SHORT, fraction=0.65, archive=path, resume=True)
+        gd.studies.life(LOW, LAW, **SHORT, fraction=0.69, archive=path)
+    resumed = gd.studies.life(LOW, LAW, **SHORT, fraction=0.69, archive=path, resume=True)
     for name in ("coverage", "coverage_loss", "passage_adhesion_work", "min_gear_speed"):
         np.testing.assert_array_equal(resumed[name], short[name])
     assert len(seen) - 1 == short.attrs["windows"]  # none was computed twice but for the one that was cut off
@@ -136,7 +136,7 @@ def test_a_life_that_was_cut_off_is_resumed(short, tmp_path, monkeypatch):
 def test_a_life_that_is_cut_off_in_its_last_cycles_is_resumed(tmp_path):
     """The law is so fast that no jump is worth its windows: cycle by cycle, which is done again."""
     law, path = gd.wear.loss_law("adhesion_work", energy=2e-10), tmp_path / "life.nc"
-    whole = gd.studies.life(LOW, law, **SHORT, fraction=0.65)
+    whole = gd.studies.life(LOW, law, **SHORT, fraction=0.69)
     assert whole.attrs["mesh_cycles_direct"] > 10
     said = []
 
@@ -146,11 +146,11 @@ def test_a_life_that_is_cut_off_in_its_last_cycles_is_resumed(tmp_path):
             raise KeyboardInterrupt
 
     with pytest.raises(gd.Interrupted, match="resume"):
-        gd.studies.life(LOW, law, **SHORT, fraction=0.65, archive=path, progress=cut)
+        gd.studies.life(LOW, law, **SHORT, fraction=0.69, archive=path, progress=cut)
     kept = gd.studies.open_life(path)
     assert kept.attrs["ending"] == "interrupted"
     np.testing.assert_array_equal(kept.coverage, whole.coverage[: kept.sizes["passages"]])
-    resumed = gd.studies.life(LOW, law, **SHORT, fraction=0.65, archive=path, resume=True)
+    resumed = gd.studies.life(LOW, law, **SHORT, fraction=0.69, archive=path, resume=True)
     for name in ("passages", "coverage", "coverage_loss", "passage_adhesion_work", "mean_gear_speed"):
         np.testing.assert_array_equal(resumed[name], whole[name])
 

@@ -1,6 +1,6 @@
 """Cycle jump against mesh cycles simulated one after another, with a law some million times as fast.
 
-Whole lives are compared by ``python -m gearidae_bench.life_check``; here are parts of them, which take seconds.
+Whole lives are compared by ``python -m gearidae_pages.life_check``; here are parts of them, which take seconds.
 """
 
 import numpy as np
@@ -9,7 +9,7 @@ import pytest
 import gearidae as gd
 from gearidae.studies.life_coverage import coverage_of
 from gearidae.studies.life_window import Cycles, run_window, window_scene
-from gearidae_bench.life_check import PLACES, brute_force, compared, fast_life
+from gearidae_pages.life_check import PLACES, brute_force, compared, fast_life
 
 
 def test_a_life_of_independent_sides():

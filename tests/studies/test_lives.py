@@ -1,7 +1,5 @@
 """Lives of an ensemble: each as if it were alone, resumed, and the share of gears that still turn."""
 
-import sys
-
 import numpy as np
 import pytest
 import xarray as xr
@@ -14,29 +12,9 @@ SHORT = {"cycles": 3, "settle": 4, "starts": 1, "places": 2, "fraction": 0.695, 
 VARY = {"drive.torque": "uniform(4e-18, 5e-18)"}
 
 
-def test_members_are_followed_kept_and_resumed(tmp_path, monkeypatch):
+def test_a_member_is_the_life_of_its_scene(tmp_path):
     path = tmp_path / "lives.nc"
-    module, done = sys.modules[gd.studies.lives.__module__], []
-    real = module.life
-
-    def cut(scene, *args, **options):
-        if len(done) == 2:
-            raise KeyboardInterrupt
-        done.append(scene)
-        return real(scene, *args, **options)
-
-    monkeypatch.setattr(module, "life", cut)
-    with pytest.raises(gd.Interrupted, match="resume"):
-        gd.studies.lives(LOW, LAW, VARY, 3, seed=1, archive=path, jobs=1, **SHORT)
-    with pytest.raises(gd.SceneError, match="cut off"):
-        gd.studies.lives(LOW, LAW, VARY, 3, seed=1, archive=path, jobs=1, **SHORT)
-    rates, computed = sys.modules["gearidae.studies.life_rates"], []
-    run_window = rates.run_window
-    monkeypatch.setattr(module, "life", real)
-    monkeypatch.setattr(rates, "run_window", lambda *args: computed.append(args) or run_window(*args))
-    found = gd.studies.lives(LOW, LAW, VARY, 3, seed=1, archive=path, resume=True, **SHORT)
-    assert len(computed) == found.windows[2]  # the two that were whole are read
-    assert not path.with_name("lives.nc.lives").exists()
+    found = gd.studies.lives(LOW, LAW, VARY, 2, seed=1, archive=path, jobs=1, **SHORT)
     assert found.torque.dims == ("member",)
     assert set(found.ending.values) == {"coverage"}
     assert np.isnan(found.passages_to_sticking).all()

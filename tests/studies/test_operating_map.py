@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-import xarray as xr
 
 import gearidae as gd
 from gearidae.analysis.verdict import outcomes
 from gearidae.analysis.verdict.codes import Outcome
 from gearidae.cli import main
-from gearidae.errors import Interrupted
 from gearidae.records import EventKind
-from sweeps import without_times
 
 RATTLING = gd.preset("teodorescu2009_low_speed").replace(
     {"run.duration": 0.06, "drive.harmonic": {"amplitude": 0.0, "frequency": "1 kHz"}}
@@ -23,6 +20,13 @@ OVER = {"drive.harmonic.amplitude": [0.0, 1e-16, 2e-15], "coating.sam_fraction":
 @pytest.fixture(scope="module")
 def chart():
     return gd.studies.operating_map(RATTLING, OVER)
+
+
+def test_a_sweep_that_kept_the_same_is_no_operating_map(tmp_path):
+    short = RATTLING.replace({"run.duration": 1e-4})
+    gd.sweep(short, OVER, keep="extremes", archive=tmp_path / "sweep.nc")
+    with pytest.raises(gd.SceneError, match="of another sweep"):
+        gd.studies.operating_map(short, OVER, archive=tmp_path / "sweep.nc", resume=True)
 
 
 def test_a_stronger_harmonic_makes_the_teeth_cross_and_then_stick(chart):
@@ -37,25 +41,6 @@ def test_a_stronger_harmonic_makes_the_teeth_cross_and_then_stick(chart):
         assert int(place.flank_changes) == int((run.event_kind == EventKind.FLANK_CHANGE).sum())
         assert place.verdict.item() == outcome.verdict
         assert place.gearidae.scene.drive.harmonic[0].amplitude == amplitude
-
-
-def test_cut_off_and_resumed_it_ends_alike(chart, tmp_path):
-    target = tmp_path / "map.nc"
-
-    def cut_off(done, total):
-        if done >= 3:
-            raise KeyboardInterrupt
-
-    with pytest.raises(Interrupted) as interrupted:
-        gd.studies.operating_map(RATTLING, OVER, progress=cut_off, jobs=1, archive=target)
-    assert (interrupted.value.dataset.outcome == Outcome.UNFINISHED).sum() >= 3
-    whole = gd.studies.operating_map(RATTLING, OVER, archive=target, resume=True)
-    xr.testing.assert_identical(without_times(whole), without_times(chart))
-    xr.testing.assert_identical(without_times(gd.open_archive(target)), without_times(chart))
-    # a sweep that kept the same is no operating map
-    gd.sweep(RATTLING, OVER, keep="extremes", archive=tmp_path / "sweep.nc")
-    with pytest.raises(gd.SceneError, match="of another sweep"):
-        gd.studies.operating_map(RATTLING, OVER, archive=tmp_path / "sweep.nc", resume=True)
 
 
 @pytest.mark.parametrize("over", [{}, {"drive.torque": [1e-18]}, OVER | {"drive.torque": [1e-18]}, None, 3])

@@ -11,7 +11,6 @@ import xarray as xr
 
 import gearidae as gd
 from gearidae.cli import main
-from gearidae.errors import Interrupted
 from gearidae.studies.products import answer
 from sweeps import without_times
 
@@ -36,20 +35,10 @@ def test_seeds_are_numbered_from_the_scene_s_own_on(found):
     assert np.unique(found.max_gear_speed).size == 6
 
 
-def test_processes_and_a_cut_off_do_not_matter(found, tmp_path):
+def test_processes_do_not_matter(found):
     with ProcessPoolExecutor(1) as executor:
         other = gd.studies.ensemble(GEARS, SEEDS, 6, executor=executor)
     xr.testing.assert_identical(without_times(other), without_times(found))
-    target = tmp_path / "out.nc"
-
-    def cut_off(done, total):
-        if done >= 3:
-            raise KeyboardInterrupt
-
-    with pytest.raises(Interrupted):
-        gd.studies.ensemble(GEARS, SEEDS, 6, jobs=1, progress=cut_off, archive=target)
-    whole = gd.studies.ensemble(GEARS, SEEDS, 6, archive=target, resume=True)
-    xr.testing.assert_identical(without_times(whole), without_times(found))
 
 
 def test_means_have_standard_errors(found):

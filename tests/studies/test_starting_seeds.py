@@ -4,22 +4,17 @@ from __future__ import annotations
 
 import itertools
 import math
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
-import xarray as xr
 from scipy.optimize import brentq
 
 import gearidae as gd
-from gearidae.cli import main
 from gearidae.engine import solve
-from gearidae.errors import Interrupted
 from gearidae.populations.first_touch import first_touch
 from gearidae.studies import _starting_seeds, starting_ramp
 from gearidae.studies._starting_seeds import _quantiles
 from reference.population import Contact, Tip
-from sweeps import without_times
 
 GEARS = gd.preset("teodorescu2009").replace({"contact.roughness": "discrete", "load.torque": 0.0})
 BARE = GEARS.replace({"coating.sam_fraction": 0.0})
@@ -135,7 +130,7 @@ def found():
     return gd.studies.starting_torque(BARE, **FEW)
 
 
-def test_each_gear_is_found_alone_and_by_threads_alike(found):
+def test_each_gear_is_found_alone(found):
     assert found.starting_torque.dims == ("sam_fraction", "seed")
     at = starting_ramp.laid(BARE, 1)
     assert float(found.place[1]) == at.initial.mesh_phase
@@ -144,9 +139,6 @@ def test_each_gear_is_found_alone_and_by_threads_alike(found):
         starting_ramp.ramp_rate(starting_ramp.pitch_of(at), scale, 1), rel=1e-12, abs=0
     )
     assert found.median_change.item() < 0.1
-    with ThreadPoolExecutor(2) as executor:
-        other = gd.studies.starting_torque(BARE, seeds=2, executor=executor)
-    xr.testing.assert_identical(without_times(other), without_times(found))
 
 
 def test_bare_teeth_hold_more_and_dry_resistance_adds_to_them():
@@ -161,20 +153,7 @@ def test_bare_teeth_hold_more_and_dry_resistance_adds_to_them():
     assert float(dry.starting_torque[0, 0]) == pytest.approx(1.1 * bare, rel=0.1, abs=0)
 
 
-def test_cut_off_and_resumed_it_ends_alike(found, tmp_path):
-    target = tmp_path / "out.nc"
-
-    def cut_off(done, total):
-        if done >= 3.0:
-            raise KeyboardInterrupt
-
-    with pytest.raises(Interrupted, match="--resume"):
-        gd.studies.starting_torque(BARE, archive=target, progress=cut_off, **FEW)
-    whole = gd.studies.starting_torque(BARE, archive=target, resume=True, **FEW)
-    xr.testing.assert_identical(without_times(whole), without_times(found))
-    assert main(["plot", str(target), "-o", str(tmp_path / "out.png")]) == 0
-
-
+@pytest.mark.by_hand
 def test_bare_gears_start_as_those_of_a_prototype():
     """A tenth is what half of its own rate may have changed the prototype's median, 1.1e-11 N m, by.
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -12,26 +11,25 @@ import xarray as xr
 import gearidae as gd
 from gearidae.analysis.verdict import outcomes
 from gearidae.cli import main
-from gearidae.errors import Interrupted
-from gearidae.runs.kept_runs import folder_beside
 from gearidae.runs.running import unsolved
 from gearidae.studies import sticking_threshold as door
 from gearidae.studies import threshold_run
-from gearidae.studies.declared.threshold import _rows
+from gearidae.studies.declared import threshold
 
 LOW = gd.preset("teodorescu2009_low_speed")
 BETWEEN = (0.4, 0.6)
+WIDTH = 0.0125
 
 
 @pytest.fixture(scope="module")
 def found():
-    return gd.studies.sticking_threshold(LOW, between=BETWEEN, exits=5, width=0.01)
+    return gd.studies.sticking_threshold(LOW, between=BETWEEN, exits=5, width=WIDTH)
 
 
 def test_runs_of_their_own_stick_and_turn_at_the_bracket(found):
     """Six exits take 0.33 s at the steady speed of 1.5 rad/s: a run at either end says what the bracket says."""
     one = found.sel(exits=5)
-    assert 0.0 < float(one.passes - one.sticks) <= 0.01
+    assert 0.0 < float(one.passes - one.sticks) <= WIDTH
     assert float(one.limit) == pytest.approx(0.5 * float(one.sticks + one.passes), rel=1e-15)
     pitch = 2.0 * math.pi / (76 * 1.5)
     for name, passed in (("sticks", False), ("passes", True)):
@@ -43,20 +41,14 @@ def test_runs_of_their_own_stick_and_turn_at_the_bracket(found):
 def test_a_run_answers_for_all_numbers_of_exits(found):
     assert found.exits.values.tolist() == [1, 2, 5]
     assert np.isnan(found.limit.values[:2]).all()  # none sticks at the first two
-    later = gd.studies.sticking_threshold(LOW, between=(0.6, 0.4), exits=10, width=0.01)
-    assert float(later.limit.sel(exits=5)) == pytest.approx(float(found.limit[-1]), abs=0.01)
+    later = gd.studies.sticking_threshold(LOW, between=(0.6, 0.4), exits=10, width=WIDTH)
+    assert float(later.limit.sel(exits=5)) == pytest.approx(float(found.limit[-1]), abs=WIDTH)
     assert (
         float(later.limit[-1]) > float(later.limit.sel(exits=5)) + 0.05
     )  # the longer one waits the more sticks
     stuck = later.exits_passed.values < 10
     assert np.isfinite(later.stick_time.values[stuck]).all()
     assert (later.stick_time.values[stuck] < later.simulated_time.values[stuck]).all()
-
-
-def test_executors_do_not_matter(found):
-    with ThreadPoolExecutor(1) as executor:
-        other = gd.studies.sticking_threshold(LOW, between=BETWEEN, exits=5, width=0.01, executor=executor)
-    assert other.drop_attrs().identical(found.drop_attrs())
 
 
 def failing(monkeypatch, module, name, fails):
@@ -72,14 +64,14 @@ def failing(monkeypatch, module, name, fails):
 def test_a_run_that_fails_is_left_out_and_named(found, monkeypatch, caplog):
     """The first point between the ends fails: the bracket is found all the same, beside it."""
     failing(monkeypatch, threshold_run, "solve_to_end", lambda scene: scene.coating.sam_fraction == 0.45)
-    other = gd.studies.sticking_threshold(LOW, between=BETWEEN, exits=5, width=0.01)
+    other = gd.studies.sticking_threshold(LOW, between=BETWEEN, exits=5, width=WIDTH)
     assert "one run is left out: the run at 0.45 could not be finished: of a test" in caplog.text
     assert other.attrs["left_out"] == 1
     assert 0.45 not in other.value.values
     one = other.sel(exits=5)
     assert float(one.sticks) <= float(one.passes)
     assert float(one.limit) == pytest.approx(float(found.limit.sel(exits=5)), abs=0.05)
-    assert ("runs", str(other.sizes["run"]), "1 more could not be finished") in tuple(_rows(other))
+    assert ("runs", str(other.sizes["run"]), "1 more could not be finished") in tuple(threshold._rows(other))
 
 
 def test_a_bracket_whose_inner_runs_all_fail_stays_as_it_is(monkeypatch):
@@ -92,28 +84,6 @@ def test_an_end_that_fails_is_an_error(monkeypatch):
     failing(monkeypatch, threshold_run, "solve_to_end", lambda scene: scene.coating.sam_fraction == 0.6)
     with pytest.raises(gd.SolverError, match=r"the run at 0\.6 could not be finished: of a test"):
         gd.studies.sticking_threshold(LOW, between=BETWEEN, exits=5, width=0.01)
-
-
-def test_cut_off_and_resumed_it_ends_alike(found, tmp_path):
-    target, told = tmp_path / "out.nc", []
-
-    def cut_off(done, total):
-        told.append((done, total))
-        if done == 3:
-            raise KeyboardInterrupt
-
-    settings = {"between": BETWEEN, "exits": 5, "width": 0.01, "archive": target}
-    with pytest.raises(Interrupted) as interrupted:
-        gd.studies.sticking_threshold(LOW, progress=cut_off, **settings)
-    assert interrupted.value.dataset.sizes["run"] == 3
-    assert not target.exists()
-    with pytest.raises(gd.SceneError, match="--resume"):
-        gd.studies.sticking_threshold(LOW, **settings)
-    whole = gd.studies.sticking_threshold(LOW, resume=True, **settings)
-    assert whole.drop_attrs().identical(found.drop_attrs())
-    assert not folder_beside(target).exists()
-    assert target.exists()
-    assert all(done <= total for done, total in told)
 
 
 @pytest.mark.parametrize(
@@ -143,6 +113,7 @@ def test_scenes_without_a_threshold_are_refused():
 
 def test_the_command_prints_the_brackets(found, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(threshold, "_WIDTH", 0.25)
     command = [
         "threshold",
         "teodorescu2009_low_speed",
@@ -155,7 +126,7 @@ def test_the_command_prints_the_brackets(found, tmp_path, monkeypatch, capsys):
     told = capsys.readouterr().out
     with xr.open_dataset("teodorescu2009_low_speed_threshold.nc") as kept:
         limit = float(kept.limit[-1])
-    assert limit == pytest.approx(float(found.limit[-1]), abs=0.01)
+    assert limit == pytest.approx(float(found.limit[-1]), abs=0.05)
     assert "within 5 mesh exits" in told
     assert f"{limit:.4g}" in told
     assert "no run has stuck so early" in told

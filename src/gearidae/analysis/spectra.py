@@ -11,16 +11,20 @@ whatever the window. Teodorescu et al. 2009 (doi:10.1016/j.triboint.2008.05.019)
 
 from __future__ import annotations
 
+import math
+import warnings
 from typing import Any
 
 import numpy as np
 import scipy
 import xarray as xr
 
-from gearidae.analysis.aliasing import warn_of_aliasing
 from gearidae.analysis.signal import FEWEST_SAMPLES, Batch, signals, stack
+from gearidae.archive.select import is_roller, run_scene, runs
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
+from gearidae.mesh.pair_contact import pair_contact
+from gearidae.scene import Scene
 from gearidae.scene.quantity import whole
 
 _MOST_PADDING = 64
@@ -198,3 +202,39 @@ def _attributes(batch: Batch, window: str | tuple[str, float], size: int, overla
         "resolution": 1.0 / (size * interval),
         "scaling": "density, one-sided; the mean of each segment is taken out",
     }
+
+
+def warn_of_aliasing(data: xr.Dataset | xr.DataArray, rate: float) -> None:
+    """Warn of a record whose sampling rate is below twice the frequency of the contact.
+
+    Parameters
+    ----------
+    data : Dataset or DataArray
+        Runs of gears with their drive torque; nothing is known of others.
+    rate : float
+        Sampling rate [Hz].
+    """
+    if not isinstance(data, xr.Dataset) or "scene" not in data.attrs or "drive_torque" not in data:
+        return
+    if is_roller(data):
+        return
+    frequency = max(_contact_frequency(run_scene(run), run) for _, run in runs(data))
+    if rate < 2.0 * frequency:
+        warnings.warn(
+            f"sampling at {rate:.4g} Hz is below twice the frequency of the loaded contact, {frequency:.4g} Hz: the "
+            "spectrum may show oscillations of the contact at lower frequencies (aliasing)",
+            stacklevel=3,
+        )
+
+
+def _contact_frequency(scene: Scene, run: xr.Dataset) -> float:
+    """Frequency of one pair about the gap at which it carries the mean drive torque [Hz]; 0 if it carries none."""
+    assert scene.gears is not None
+    contact, geometry = pair_contact(scene), scene.geometry
+    pinion, gear = geometry.base_radius_pinion, geometry.base_radius_gear
+    torque = float(np.nan_to_num(np.abs(run["drive_torque"]).mean()))
+    gap = contact.resting_gap(torque / pinion, 1e-3)
+    if math.isnan(gap):
+        return 0.0
+    inverse_mass = pinion**2 / scene.gears.pinion_inertia + gear**2 / scene.gears.gear_inertia
+    return math.sqrt(max(contact.joined_stiffness(gap), 0.0) * inverse_mass) / (2.0 * math.pi)

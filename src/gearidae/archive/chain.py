@@ -1,20 +1,20 @@
-"""Runs that go on from each other, read as one run."""
+"""Runs that go on from each other, read as one run; and where a dataset that was joined from others comes from."""
 
 from __future__ import annotations
 
 import json
 import math
 from collections.abc import Iterator, Sequence
+from datetime import UTC, datetime
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from gearidae.archive.joint import history_of, part_name, software_of
+import gearidae
 from gearidae.archive.rows import DIMS, kinds_in, rows_from
-from gearidae.archive.select import run_scene
-from gearidae.archive.single import single_run
+from gearidae.archive.select import run_scene, single_run
 from gearidae.archive.variables import RUN
 from gearidae.errors import SceneError
 from gearidae.scene.differences import MAY_CHANGE, first_difference
@@ -69,9 +69,10 @@ def chained(parts: Sequence[xr.Dataset]) -> xr.Dataset:
         coords={name: each for name, each in variables.items() if name in last.coords},
         attrs=last.attrs,
     )
-    ds.attrs.pop("start_time", None)
-    if "start_time" in singles[0].attrs:
-        ds.attrs["start_time"] = singles[0].attrs["start_time"]
+    for name in ("start_time", "parent"):
+        ds.attrs.pop(name, None)
+        if name in singles[0].attrs:
+            ds.attrs[name] = singles[0].attrs[name]
     for name in _SUMS:
         ds.attrs[name] = sum(part.attrs[name] for part in singles)
     for name in ("backend", "method"):
@@ -162,7 +163,7 @@ def _spacing(run: xr.Dataset) -> float:
 
 
 def _links(run: xr.Dataset) -> Iterator[dict[str, Any]]:
-    """Where a run begins and ends, with its scene; of a chain, its runs."""
+    """Where a run begins and ends, with its scene and the run that it goes on from; of a chain, its runs."""
     if "chain" in run.attrs:
         yield from json.loads(run.attrs["chain"])
         return
@@ -171,4 +172,30 @@ def _links(run: xr.Dataset) -> Iterator[dict[str, Any]]:
         "start": None if math.isinf(start) else start,
         "end": end,
         "scene": json.loads(run.attrs["scene"]),
+        **{name: run.attrs[name] for name in ("started_from", "parent") if name in run.attrs},
     }
+
+
+_MOST_LINES = 100
+"""Lines of history taken over from the parts."""
+
+
+def history_of(parts: Sequence[xr.Dataset], action: str) -> str:
+    """Return the histories of the parts, each line once, and what has been done with them."""
+    lines = list(dict.fromkeys(line for part in parts for line in part.attrs.get("history", "").splitlines()))
+    if len(lines) > _MOST_LINES:
+        lines = [*lines[: _MOST_LINES - 1], f"and {len(lines) - _MOST_LINES + 1} lines more"]
+    now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+    return "\n".join([*lines, f"{now} gearidae {gearidae.__version__}: {action}"])
+
+
+def software_of(parts: Sequence[xr.Dataset]) -> dict[str, str]:
+    """Return the software that computed the parts, as the attribute ``source``."""
+    return {
+        "source": "; ".join(dict.fromkeys(part.attrs["source"] for part in parts if "source" in part.attrs))
+    }
+
+
+def part_name(number: int) -> str:
+    """Name one of the datasets in a message."""
+    return f"dataset {number + 1}"

@@ -16,6 +16,8 @@ from gearidae.records import COUNTERS, EnergyBalance, Extremes, Statistics, Word
 
 _COUNTERS: Final = tuple(each.name for each in COUNTERS)
 _PREFIX: Final = "checkpoint_"
+RUN: Final = "run"
+"""Attribute of an archive by which its run's checkpoint is found."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,6 @@ bytes of the file; values are checked when they are there. Two records take turn
 from __future__ import annotations
 
 import json
-import logging
 import mmap
 import subprocess
 import sys
@@ -21,8 +20,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.records import ROWS
-
-log = logging.getLogger(__name__)
 
 RECORDS: Final = "commit_records"
 """The last variable of a growing archive: two records, each a checksum and JSON, filled up with blanks."""
@@ -71,7 +68,7 @@ class Commit:
         with path.open("rb") as bytes_of:
             begin = path.stat().st_size - data
             structure = (begin, zlib.crc32(bytes_of.read(begin)))
-        return cls(structure=structure, constants=_constants(file))
+        return cls(structure=structure, constants=constants_of(file))
 
     def write(self, file: Any) -> None:
         """Write the record in the place of the one before the last."""
@@ -132,41 +129,6 @@ def check_bytes(path: Path) -> list[Commit]:
     return []
 
 
-def intact(file: Any, commits: list[Commit], path: Path) -> Commit:
-    """Return the newest state whose values are in an open file as they were written; an older one is warned of.
-
-    Parameters
-    ----------
-    commits : list of Commit
-        From `check_bytes`, not empty.
-    path : Path
-        The file.
-
-    Raises
-    ------
-    ValueError
-        If there is none.
-    """
-    from gearidae.archive.checkpoint import Checkpoint  # which keeps commits
-
-    newest = commits[0]
-    if _constants(file) != newest.constants:
-        raise ValueError("its values have been altered")
-    if newest.holds(file):
-        return newest
-    point = Checkpoint.newest(path, str(getattr(file, "run", "")))
-    for commit in (*commits[1:], *([] if point is None else [point.commit])):
-        if commit.lengths.get("time") and commit.holds(file):
-            log.warning(
-                "%s is damaged after %d of its %d samples: the rest is left out",
-                path,
-                commit.lengths["time"],
-                newest.lengths["time"],
-            )
-            return commit
-    raise ValueError("its values have been altered")
-
-
 def checksum_of(variable: Any, length: int, before: int = 0) -> int:
     """Checksum of the first values of a variable in an open file, after those of another checksum."""
     found = before
@@ -180,7 +142,7 @@ def _checksum(values: NDArray[Any], before: int) -> int:
     return zlib.crc32(values.astype(values.dtype.newbyteorder("<"), copy=False).tobytes(), before)
 
 
-def _constants(file: Any) -> int:
+def constants_of(file: Any) -> int:
     """Checksum of all values that are there from the first."""
     found = 0
     for name, variable in file.variables.items():

@@ -10,14 +10,12 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from gearidae.archive.chain import chained
+from gearidae.archive.chain import chained, history_of, part_name, software_of
 from gearidae.archive.dataset import dimension_names
 from gearidae.archive.exposures import exposure_coordinates
-from gearidae.archive.joint import history_of, part_name, software_of
 from gearidae.archive.keep import kept_in
 from gearidae.archive.rows import rows_from
-from gearidae.archive.select import run_value, runs, scene_of, swept_dims
-from gearidae.archive.single import single_run
+from gearidae.archive.select import run_value, runs, scene_of, single_run, swept_dims
 from gearidae.archive.stack import Axis, stack
 from gearidae.archive.variables import (
     ENERGY_TOTALS,

@@ -10,10 +10,10 @@ import base64
 import binascii
 import hashlib
 import zlib
+from collections.abc import Mapping
 from typing import Any, Final
 
 import numpy as np
-import xarray as xr
 
 from gearidae.errors import SceneError
 from gearidae.records import Words
@@ -40,13 +40,13 @@ def fingerprint(words: Words) -> str:
     return hashlib.sha256(np.ascontiguousarray(words).tobytes()).hexdigest()[:16]
 
 
-def end_state_of(ds: xr.Dataset) -> tuple[Words, float]:
+def end_state_of(attributes: Mapping[Any, Any]) -> tuple[Words, float]:
     """Read the state in which a run ended, and when that run began [s].
 
     Parameters
     ----------
-    ds : xarray.Dataset
-        A single run.
+    attributes : mapping
+        Of the dataset of a single run.
 
     Returns
     -------
@@ -56,13 +56,13 @@ def end_state_of(ds: xr.Dataset) -> tuple[Words, float]:
     Raises
     ------
     SceneError
-        If the dataset has none, or it is damaged.
+        If there is none, or it is damaged.
     """
-    if "swept" in ds.attrs:
+    if "swept" in attributes:
         raise SceneError("start", "(a sweep)", "must be a single run")
-    text = ds.attrs.get("end_state")
+    text = attributes.get("end_state")
     if text is None:
-        status = str(ds.attrs.get("status", "no status"))[:40]
+        status = str(attributes.get("status", "no status"))[:40]
         raise SceneError("start", f"(a run with status {status})", "carries no state to go on from")
     try:
         if not isinstance(text, str):
@@ -71,7 +71,7 @@ def end_state_of(ds: xr.Dataset) -> tuple[Words, float]:
         content = unpack.decompress(base64.b64decode(text, validate=True), _LARGEST)
         if not unpack.eof or len(content) % 8:
             raise ValueError
-        start = float(ds.attrs.get("start_time", 0.0))
+        start = float(attributes.get("start_time", 0.0))
         if not 0.0 <= start < np.inf:
             raise ValueError
     except (TypeError, ValueError, binascii.Error, zlib.error):

@@ -11,7 +11,7 @@ import numpy as np
 from gearidae.archive.variables import EXPOSURES, PLACES
 from gearidae.arrays import Floats
 from gearidae.records import ExposureRows, Solution
-from gearidae.scene import MATERIAL_NAMES, Scene
+from gearidae.scene import MATERIAL_NAMES, GearScene, Scene, require_gears
 from gearidae.scene.coating import interface_shares
 from gearidae.scene.coating_table import fraction_at
 from gearidae.scene.friction import has_flank_friction
@@ -20,7 +20,7 @@ FLANKS = ("drive", "coast")
 _POINTS = 64  # in each place, for means over it
 
 
-def flank_areas(scene: Scene) -> Floats:
+def flank_areas(scene: GearScene) -> Floats:
     """Areas of one flank of the pinion that the places stand for.
 
     Along the path of contact the contact moves on the involute by ``rho / R1`` of its way, rho being the pinion's
@@ -36,7 +36,6 @@ def flank_areas(scene: Scene) -> Floats:
     ndarray, shape (places,)
         Square metres.
     """
-    assert scene.gears is not None
     geometry = scene.geometry
     edges = _edges(scene)
     tangent = geometry.base_radius_pinion * math.tan(scene.gears.pressure_angle)
@@ -44,7 +43,7 @@ def flank_areas(scene: Scene) -> Floats:
     return np.asarray(scene.gears.face_width * np.diff(radius**2) / (2.0 * geometry.base_radius_pinion))
 
 
-def gear_flank_areas(scene: Scene) -> Floats:
+def gear_flank_areas(scene: GearScene) -> Floats:
     """Areas of one flank of the gear that the places stand for: what meets `flank_areas` of the pinion.
 
     Parameters
@@ -57,7 +56,6 @@ def gear_flank_areas(scene: Scene) -> Floats:
     ndarray, shape (places,)
         Square metres.
     """
-    assert scene.gears is not None
     geometry = scene.geometry
     radius = geometry.tangent_gear + geometry.approach - _edges(scene)
     return np.asarray(scene.gears.face_width * -np.diff(radius**2) / (2.0 * geometry.base_radius_gear))
@@ -71,7 +69,7 @@ def _edges(scene: Scene) -> Floats:
 
 def exposure_coordinates(scene: Scene) -> dict[Hashable, Any]:
     """Make the coordinates of the exposures; none if the scene asks for none."""
-    if scene.run.exposures == 0 or scene.gears is None:
+    if scene.run.exposures == 0 or not isinstance(scene, GearScene):
         return {}
     edges = _edges(scene)
     values: dict[str, Any] = {
@@ -116,7 +114,7 @@ def exposure_variables(
     }
     if scene.run.exposures == 0 or len(places) > 1 or all(each.extremes is None for each in solutions):
         return {}
-    parts = [_per_area(own, each) for own, each in zip(scenes, solutions, strict=True)]
+    parts = [_per_area(require_gears(own), each) for own, each in zip(scenes, solutions, strict=True)]
     made: dict[Hashable, Any] = {}
     for name, variable in EXPOSURES.items():
         if name == "friction_work" and not any(has_flank_friction(each) for each in scenes):
@@ -126,9 +124,8 @@ def exposure_variables(
     return made
 
 
-def _per_area(scene: Scene, solution: Solution) -> dict[str, Floats]:
+def _per_area(scene: GearScene, solution: Solution) -> dict[str, Floats]:
     """Exposures of one run, per area of the pinion's flanks."""
-    assert scene.gears is not None
     rows = ExposureRows.of(len(MATERIAL_NAMES))
     rubs = has_flank_friction(scene)
     shape = (len(FLANKS), scene.gears.pinion_teeth, rows.per_tooth(rubs=rubs), scene.run.exposures)
@@ -159,14 +156,13 @@ def _per_area(scene: Scene, solution: Solution) -> dict[str, Floats]:
     }
 
 
-def _shares_by_place(scene: Scene) -> Floats:
+def _shares_by_place(scene: GearScene) -> Floats:
     """Share of each material in each place of the pinion's teeth, the mean over the gear's teeth that they meet.
 
     Returns
     -------
     ndarray, shape (flanks, materials, teeth, places)
     """
-    assert scene.gears is not None
     gears, places = scene.gears, scene.run.exposures
     along = (np.arange(_POINTS * places) + 0.5) / (_POINTS * places)
     teeth, flanks = np.arange(gears.pinion_teeth), np.arange(len(FLANKS))

@@ -10,7 +10,6 @@ rewrites the file as any other archive.
 
 from __future__ import annotations
 
-import json
 import logging
 import secrets
 import time
@@ -25,28 +24,19 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gearidae.archive.checkpoint import Checkpoint, drop_checkpoints
+from gearidae.archive.checkpoint import RUN, Checkpoint, drop_checkpoints
 from gearidae.archive.commits import COPIED, COUNTS, LENGTH, RECORDS, Commit, check_bytes
 from gearidae.archive.definition import define
 from gearidae.archive.disk import disk_errors, sync
-from gearidae.archive.end_state import packed_state
 from gearidae.archive.library import LIBRARY, close, opened
 from gearidae.archive.rows import archived, kinds_in, teeth_in
-from gearidae.archive.totals import total_variables
-from gearidae.records import COUNTERS, Block, Rows, Statistics, sample_times
-from gearidae.scene import Scene
+from gearidae.records import Block, Rows, Statistics, sample_times
 
 ROOM: Final = {"event": 65_536, "passage": 4096}
 """Rows to make room for, twice as many whenever they run out: along a dimension without limit each takes longer."""
 CHECKPOINT_SECONDS = 1.0
 """Least wall time between checkpoints [s]: each waits for the disk."""
-_RUN: Final = "run"
-"""Attribute by which a run's checkpoint is found."""
-
 log = logging.getLogger(__name__)
-
-RESUMABLE: Final = "; go on with --resume (resume=True)"
-"""End of the message of a run that nobody goes on with."""
 
 
 class GrowingArchive:
@@ -232,7 +222,7 @@ class GrowingArchive:
         with LIBRARY:
             self._file = netCDF4.Dataset(self.path, "r+", keepweakref=True)
             self._file.set_auto_maskandscale(False)
-            self._run = str(getattr(self._file, _RUN, ""))
+            self._run = str(getattr(self._file, RUN, ""))
             counts = (COUNTS[dim] for dim in self._nothing)
             if missing := {*self._columns, *counts, RECORDS, *self._row_names()} - set(self._file.variables):
                 raise OSError(f"{self.path.name} has no variable {min(missing)}")
@@ -330,52 +320,6 @@ class GrowingArchive:
             variable[start : start + count] = self.read(name, slice(start, start + count))
 
 
-def is_growing(ds: xr.Dataset) -> bool:
-    """Whether a dataset has been read from the archive of a run that is not at its end."""
-    return COUNTS["time"] in ds.variables
-
-
-def trimmed(ds: xr.Dataset, path: Path, commit: Commit | None, *, running: bool) -> xr.Dataset:
-    """Cut a growing archive down to what has been committed, and say how the run stands.
-
-    Parameters
-    ----------
-    ds : xarray.Dataset
-        As read from the file.
-    path : Path
-        The file.
-    commit : Commit, optional
-        The state to show; None of an archive of version 0.2.0.
-    running : bool
-        Whether a process was writing it.
-    """
-    grown = {dim: name for dim, name in COUNTS.items() if name in ds}
-    lengths = {dim: max(int(ds[name].values.item()), 0) for dim, name in grown.items()}
-    if commit is not None:
-        lengths = {**lengths, **commit.lengths}
-    cut = ds.isel({dim: slice(length) for dim, length in lengths.items()})
-    cut = cut.drop_vars([*grown.values(), RECORDS], errors="ignore")
-    point = Checkpoint.newest(path, str(cut.attrs.pop(_RUN, "")))
-    remedy = "" if running else RESUMABLE
-    cut.attrs |= {
-        "status": "running" if running else "interrupted",
-        "message": f"not at its end yet{remedy}",
-    }
-    if point is not None:
-        cut.attrs |= {
-            "message": f"not at its end yet; checkpoint at {point.time:g} s{remedy}",
-            "end_state": packed_state(point.state),
-            "wall_time": point.wall_time,
-            **{
-                each.name: getattr(point.statistics, each.name) for each in COUNTERS if each.name in cut.attrs
-            },
-        }
-        scene = Scene.from_dict(json.loads(cut.attrs["scene"]))
-        cut["reached"] = ((), point.time, cut["reached"].attrs)
-        cut = cut.assign(total_variables(scene, [scene], [point]))
-    return cut
-
-
 def _lay_out(path: Path, template: xr.Dataset, run: str, room: Mapping[str, int]) -> None:
     """Write the file's structure with room along dimensions, filled with what stands for nothing."""
     path.unlink(missing_ok=True)
@@ -383,7 +327,7 @@ def _lay_out(path: Path, template: xr.Dataset, run: str, room: Mapping[str, int]
     grown = template.assign({COUNTS[dim]: ((), np.int64(0), {"units": "1"}) for dim in sizes})
     grown[RECORDS] = ("record_byte", np.full(2 * LENGTH, ord(" "), np.uint8))
     # a length of 0 is one without limit to netCDF
-    define(grown.assign_attrs({_RUN: run}), path, sizes, in_place=True)
+    define(grown.assign_attrs({RUN: run}), path, sizes, in_place=True)
 
 
 def _write_times(path: Path, total: int, begin: float, duration: float) -> None:

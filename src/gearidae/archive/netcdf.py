@@ -1,7 +1,12 @@
-"""Archives on disk: one netCDF4 file that holds a dataset exactly, written whole or not at all."""
+"""Archives on disk: one netCDF4 file that holds a dataset exactly, written whole or not at all.
+
+Numbers along a dimension carry HDF5's Fletcher-32, piece by piece; the file's structure has checksums of its own. What
+cannot be read of a damaged file is named in one line. Archives of older versions are brought to what this one writes.
+"""
 
 from __future__ import annotations
 
+import json
 import math
 import os
 from pathlib import Path
@@ -9,23 +14,27 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from xarray.backends import BackendArray
+from xarray.backends.netCDF4_ import NetCDF4ArrayWrapper
+from xarray.core.indexing import ExplicitIndexer, LazilyIndexedArray
 
 from gearidae.archive.attributes import readable_scene, wrong_attribute
-from gearidae.archive.commits import RECORDS, Commit, check_bytes, intact
+from gearidae.archive.commits import RECORDS, Commit, check_bytes
 from gearidae.archive.definition import CHUNK, chunked
 from gearidae.archive.disk import disk_errors
-from gearidae.archive.growing import is_growing, trimmed
-from gearidae.archive.integrity import CheckedStore
 from gearidae.archive.keep import kept_in
 from gearidae.archive.library import await_lock, check_size, uninterrupted
 from gearidae.archive.lock import is_locked
-from gearidae.archive.older import converted
+from gearidae.archive.pieces import reached
 from gearidae.archive.provenance import SCHEMA_VERSION
 from gearidae.archive.rows import kinds_in, needed
 from gearidae.archive.target import as_path, whole_file
 from gearidae.archive.time_index import LARGEST_IN_MEMORY, in_memory, with_times
+from gearidae.archive.unfinished import intact, is_growing, trimmed
+from gearidae.archive.variables import ENERGY_BALANCE, OF_SWEPT_RUN
 from gearidae.errors import SceneError
 from gearidae.records import GEAR_SAMPLES, ROLLER_SAMPLES, sampled_columns
+from gearidae.records.energy import TERMS
 from gearidae.scene import Scene
 
 _SIGNATURES = (b"\x89HDF\r\n\x1a\n", b"CDF\x05")
@@ -207,3 +216,64 @@ def _encoding(ds: xr.Dataset) -> dict[str, dict[str, Any]]:
             entry["_FillValue"] = None  # coordinates have no gaps
         encoding[str(name)] = entry
     return encoding
+
+
+class CheckedStore(xr.backends.NetCDF4DataStore):
+    """A netCDF4 file whose variables, whenever they are read, say which of them cannot be."""
+
+    def open_store_variable(self, name: str, var: Any) -> xr.Variable:
+        """Describe a variable; its values are read when they are used."""
+        variable: xr.Variable = super().open_store_variable(name, var)
+        stored = NetCDF4ArrayWrapper(name, self)  # type: ignore[no-untyped-call]
+        values = LazilyIndexedArray(_Checked(stored, name, self._filename))
+        return xr.Variable(variable.dims, values, variable.attrs, variable.encoding)
+
+
+class _Checked(BackendArray):
+    """Values of one variable in a file."""
+
+    def __init__(self, values: NetCDF4ArrayWrapper, name: str, path: str) -> None:
+        self._values, self._name, self._path = values, name, path
+        self.shape, self.dtype = values.shape, values.dtype
+
+    def __getitem__(self, key: ExplicitIndexer) -> Any:
+        try:
+            return self._values[key]
+        except (RuntimeError, OSError, ValueError, MemoryError) as error:
+            # netCDF4 has one kind of error for a wrong checksum, an unknown filter and a missing piece
+            damage = f"is damaged: its variable {self._name} cannot be read ({error})"
+            raise SceneError("archive", self._path, damage) from error
+
+
+def converted(ds: xr.Dataset) -> xr.Dataset:
+    """Put the energy balance of a single run, JSON in an attribute up to version 0.2.0, into variables.
+
+    A loss that the version did not know is 0, also in a sweep. The run summary, another attribute, follows from
+    the rest.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        As read from a file of any version.
+    """
+    ds.attrs.pop("account", None)
+    kept: dict[str, Any] = json.loads(ds.attrs.pop("energy_balance", "{}"))
+    if "swept" not in ds.attrs and "reached" not in ds:
+        samples = reached(ds["time"])
+        last = float(ds["time"][samples - 1]) if samples else float(ds.attrs["t_end"])
+        ds["reached"] = ((), float(kept.get("time", last)), OF_SWEPT_RUN["reached"].attributes)
+    later = {name for name, each in TERMS.items() if each.since}
+    for name in ENERGY_BALANCE if kept else ():
+        ds[name] = (
+            (),
+            float(kept.get(name, 0.0) if name in later else kept[name]),
+            _balance_attributes(name),
+        )
+    if all(name in ds for name in ENERGY_BALANCE if name not in later):
+        for name in later - set(map(str, ds.variables)):
+            ds[name] = (ds["residual"].dims, 0.0 * ds["residual"].values, _balance_attributes(name))
+    return ds
+
+
+def _balance_attributes(name: str) -> dict[str, Any]:
+    return ENERGY_BALANCE[name].attributes

@@ -16,16 +16,15 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gearidae.archive.energy import balance_of
-from gearidae.archive.extremes import extremes_of
 from gearidae.archive.select import is_roller, scene_of
+from gearidae.archive.totals import balance_of, extremes_of
 from gearidae.archive.variables import ENERGY_BALANCE
 from gearidae.arrays import Floats
 from gearidae.records import EnergyBalance, EventKind, Extremes
 from gearidae.records.energy import LOSSES
 from gearidae.records.quantity import Totals
 from gearidae.records.standing import Holding
-from gearidae.scene import Scene
+from gearidae.scene import GearScene
 from gearidae.scene.friction import has_flank_friction
 from gearidae.scene.joints import has_joint_friction
 
@@ -102,7 +101,7 @@ def account(ds: xr.Dataset) -> Account | None:
     """
     if is_roller(ds) or "event" not in ds.dims or "gear_speed" not in ds or ds["gear_speed"].ndim != 1:
         return None
-    incidents = _Events(Scene.from_dict(scene_of(ds)), float(ds.attrs.get("start_time", 0.0)))
+    incidents = _Events(GearScene.from_dict(scene_of(ds)), float(ds.attrs.get("start_time", 0.0)))
     for piece in _pieces(ds, "event", ("event_time", "event_kind", "event_pair", "event_flank")):
         incidents.add(*piece.values())
     top = last = math.nan
@@ -183,8 +182,7 @@ def _time_to_speed(ds: xr.Dataset, top: float) -> float:
 class _Events:
     """Counts of events, and the intervals between stick and slip."""
 
-    def __init__(self, scene: Scene, start: float) -> None:
-        assert scene.load is not None
+    def __init__(self, scene: GearScene, start: float) -> None:
         self.counts = dict.fromkeys(EventKind, 0)
         self._dry, self._start = scene.load.is_dry, start
         self._hubs, self._rubs = has_joint_friction(scene), has_flank_friction(scene)

@@ -12,11 +12,12 @@ import xarray as xr
 from gearidae.archive.attributes import complete_scene
 from gearidae.archive.dataset import dimension_names
 from gearidae.archive.pieces import reached
-from gearidae.archive.rows import LABELS, kinds_in, own_rows, row_places
-from gearidae.archive.variables import EXTREMES, SAMPLES
+from gearidae.archive.provenance import provenance, surface_regimes
+from gearidae.archive.rows import DIMS, LABELS, kinds_in, own_rows, row_places
+from gearidae.archive.variables import EXTREMES, OF_SWEPT_RUN, RUN, SAM_FRACTION, SAMPLES
 from gearidae.errors import SceneError
 from gearidae.records import sampled_columns
-from gearidae.scene import Scene
+from gearidae.scene import GearScene, Scene
 
 
 def scene_of(ds: xr.Dataset) -> dict[str, Any]:
@@ -166,7 +167,7 @@ def _numbers_in(table: Mapping[str, Any], above: str) -> Iterator[tuple[str, flo
             yield f"{above}{name}", value
 
 
-def first_travel(run: xr.Dataset, scene: Scene) -> float:
+def first_travel(run: xr.Dataset, scene: GearScene) -> float:
     """Travel of the gear along the line of action where its angle is zero [m].
 
     Parameters
@@ -178,7 +179,6 @@ def first_travel(run: xr.Dataset, scene: Scene) -> float:
     """
     if run["gear_angle"].attrs.get("comment") != SAMPLES["gear_angle"].comment:
         return 0.0
-    assert scene.initial is not None
     return scene.initial.mesh_phase * scene.geometry.base_pitch
 
 
@@ -197,3 +197,42 @@ def motion_samples(run: xr.Dataset) -> int:
         if samples and not np.isfinite(run[name].variable[samples - 1].values):
             samples = min(samples, reached(run[name]))
     return samples
+
+
+def single_run(ds: xr.Dataset) -> xr.Dataset:
+    """Make the dataset of a single run of one that was picked from a sweep.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        With one run: picked by ``sel`` or ``isel``, or a single run, which is returned as it is.
+
+    Returns
+    -------
+    xarray.Dataset
+        With the scene, the statistics, the events and the passages of that run alone, where `gearidae.simulate`
+        puts them.
+
+    Raises
+    ------
+    SceneError
+        If there are several runs, or their scene is not known.
+    """
+    if "swept" not in ds.attrs:
+        return ds
+    scene = run_scene(ds)
+    ds = own_rows(ds.squeeze(swept_dims(ds)))
+    found: dict[str, Any] = {name: ds[name].values.item() for name in (*RUN, *OF_SWEPT_RUN) if name in ds}
+    found.pop("reached", None)
+    swept = [str(name) for name in ds.coords if name not in (*LABELS, "sam_fraction")]
+    gone = {*found, *swept, *(f"{dim}_{name}" for dim in DIMS for name in swept)}
+    single = ds.drop_vars([name for name in gone if name in ds.variables])
+    single["sam_fraction"] = ((), scene.coating.sam_fraction, SAM_FRACTION.attributes)
+    of_sweep = ("history", "source", "date_created", "product_version", "backend", "method", "keep")
+    single.attrs = {
+        **provenance(scene, ""),
+        **{name: ds.attrs[name] for name in of_sweep if name in ds.attrs},
+        **found,
+        **surface_regimes(scene),
+    }
+    return single

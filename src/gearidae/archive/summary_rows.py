@@ -12,8 +12,8 @@ from typing import Any, TypeAlias
 
 import xarray as xr
 
-from gearidae.archive.energy import balance_of, imbalance
 from gearidae.archive.run_summary import account, counted_over
+from gearidae.archive.totals import balance_of, imbalance
 from gearidae.records.energy import LOSSES, TERMS
 from gearidae.scene.prefixes import with_prefix
 

@@ -1,15 +1,20 @@
-"""The totals of runs in a dataset: variables without a dimension of a single run, along the swept ones of a sweep."""
+"""The totals of runs in a dataset, written and read: energy balance and extremes.
+
+They are variables without a dimension of a single run, and along the swept ones of a sweep.
+"""
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
+import xarray as xr
 
-from gearidae.archive.extremes import standstills_as_text
 from gearidae.archive.variables import (
+    ENERGY_BALANCE,
     ENERGY_TOTALS,
     EXTREMES,
     ROLLER_EXTREMES,
@@ -17,6 +22,7 @@ from gearidae.archive.variables import (
     extreme_names,
 )
 from gearidae.records import EnergyBalance, Extremes
+from gearidae.records.standing import COLUMNS
 from gearidae.scene import Scene
 from gearidae.scene.sampled import columns_of
 
@@ -80,3 +86,89 @@ def _energies(scene: Scene, balance: EnergyBalance | None) -> Mapping[str, float
     bound = balance.bound(scene.run.rtol, roller=scene.roller is not None)
     derived = {"residual": balance.residual, "residual_bound": bound, "efficiency": balance.efficiency}
     return {**balance, **derived}
+
+
+def standstills_as_text(extremes: Extremes) -> str:
+    """Write the standstills of a run as JSON, which has no NaN: the end of one that lasts is null."""
+    plain = [None if math.isnan(number) else number for number in extremes.standstill_list]
+    return json.dumps([plain[k : k + len(COLUMNS)] for k in range(0, len(plain), len(COLUMNS))])
+
+
+def standstills_from_text(text: str) -> list[list[float]]:
+    """Read what `standstills_as_text` has written."""
+    return [[math.nan if number is None else float(number) for number in row] for row in json.loads(text)]
+
+
+def extremes_of(run: xr.Dataset) -> Extremes | None:
+    """Read the extremes of one run.
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        A single run, or one picked from a sweep.
+
+    Returns
+    -------
+    Extremes or None
+        None if there are none: the run produced nothing, or has left no checkpoint yet.
+    """
+    if "final_speed" not in run.variables or math.isnan(float(run["final_speed"])):
+        return None
+    known = [name for name in EXTREMES if name in run.variables and name != "min_separation"]
+    return Extremes({name: run[name].values.item() for name in known})
+
+
+def balance_of(ds: xr.Dataset) -> dict[str, float] | None:
+    """Read the energy balance of one run.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A single run, or one picked from a sweep.
+
+    Returns
+    -------
+    dict or None
+        By the names of `gearidae.archive.variables.ENERGY_BALANCE` [J]; None if there is none.
+    """
+    if not all(name in ds.variables and not ds[name].dims for name in ENERGY_BALANCE):
+        return None
+    numbers = {name: float(ds[name]) + 0.0 for name in ENERGY_BALANCE}  # which makes 0 of -0
+    return None if any(map(math.isnan, numbers.values())) else numbers
+
+
+def energy_balance(ds: xr.Dataset) -> dict[str, float] | None:
+    """Read the energy balance of one run, as `balance_of`, with the ``time`` that it reaches to [s]."""
+    numbers = balance_of(ds)
+    return numbers and {"time": float(ds["reached"]), **numbers}
+
+
+def imbalance(residual: float, bound: float) -> float:
+    """Size of a residual over its bound [1]; NaN without either, and 0 where nothing has moved."""
+    if residual == 0.0:
+        return 0.0
+    return abs(residual) / bound if bound != 0.0 else math.inf
+
+
+def imbalance_of(ds: xr.Dataset) -> float:
+    """Size of the energy balance's residual over its bound, of one run [1].
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        As in `balance_of`.
+
+    Returns
+    -------
+    float
+        NaN if there is no balance.
+    """
+    kept = balance_of(ds)
+    return math.nan if kept is None else imbalance(kept["residual"], kept["residual_bound"])
+
+
+def doubt(out_by: float) -> str:
+    """Words to add to what is said of a run whose `imbalance` is above one; empty if it is not, or not known."""
+    if not out_by > 1.0:
+        return ""
+    return f", energy balance out by {out_by:.2g} times its bound"

@@ -175,11 +175,17 @@ def report(
     *,
     output: Output = None,
     overwrite: Overwrite = False,
+    teeth: Annotated[
+        bool | None,
+        Parameter(
+            help="Show the teeth in mesh, for which the scene runs again. Default: where that takes less than a minute."
+        ),
+    ] = None,
 ) -> int:
     """Write one self-contained HTML page about an archive: outcome, time series, pictures, events, scene."""
-    from gearidae.cli.report import report_archive
+    from gearidae.cli.pictures import report_archive
 
-    return report_archive(archive, output, overwrite=overwrite)
+    return report_archive(archive, output, overwrite=overwrite, teeth=teeth)
 
 
 @app.command
@@ -354,7 +360,7 @@ def info(archive: Annotated[Path, Parameter(help="Archive to describe.")], *, as
 @app.command
 def schema(*, output: Output = None, overwrite: Overwrite = False) -> int:
     """Print the JSON Schema of case files, by which editors complete and check them, or write it to a file."""
-    from gearidae.cli.schema import write_schema
+    from gearidae.cli.files import write_schema
 
     return write_schema(output, overwrite=overwrite)
 

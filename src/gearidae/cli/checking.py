@@ -12,11 +12,12 @@ from gearidae.archive.variables import EVENTS
 from gearidae.cli.case import read_scene
 from gearidae.cli.codes import DONE
 from gearidae.cli.output import say, show_rows
-from gearidae.cli.validity_table import show_validity
+from gearidae.cli.tables import show_validity
 from gearidae.progress import in_words
 from gearidae.runs.plausibility import doubts
 from gearidae.runs.run_time import run_time
 from gearidae.runs.validity import validity_rows
+from gearidae.scene import GearScene
 from gearidae.scene.friction import has_flank_friction
 from gearidae.scene.joints import has_joint_friction, has_pin
 from gearidae.scene.sampled import columns_of
@@ -63,7 +64,7 @@ def check_case(case: str, settings: Sequence[str]) -> int:
 
 def _rows(scene: Scene) -> Rows:
     yield f"{scene.name}: input is valid", "", ""
-    if scene.roller is None:
+    if isinstance(scene, GearScene):
         yield from _geometry(scene)
         yield from _estimates(scene)
     else:
@@ -83,14 +84,11 @@ def _geometry(scene: Scene) -> Rows:
     yield "path of contact", f"{geometry.path_length * 1e6:.4g} um", "from mesh entry to exit"
 
 
-def _estimates(scene: Scene) -> Rows:
+def _estimates(scene: GearScene) -> Rows:
     from gearidae.runs.estimates import effective_mass, resting_gap, steady_speed
     from gearidae.studies.equilibrium import natural_frequency
 
-    assert scene.gears is not None
     yield "Estimates", "", "from the mean torques over the run, without sticking"
-    assert scene.drive is not None
-    assert scene.load is not None
     speed = steady_speed(scene)
     if scene.drive.law is not None or scene.load.law is not None:
         yield "gear speed", "unknown", "a torque law decides"
@@ -119,13 +117,11 @@ def _estimates(scene: Scene) -> Rows:
         )
 
 
-def _friction(scene: Scene) -> Rows:
+def _friction(scene: GearScene) -> Rows:
     from gearidae.mesh.friction import hub_share, hub_starting_torque
     from gearidae.runs.estimates import mean_force
     from gearidae.runs.rubbing import flank_loss, hub_constants, hub_radii, joint_loads
 
-    assert scene.gears is not None
-    assert scene.load is not None
     geometry, coefficient, radii = scene.geometry, scene.gears.hub_friction, hub_radii(scene)
     if has_flank_friction(scene):
         loss = flank_loss(scene, mean_force(scene))
@@ -135,7 +131,7 @@ def _friction(scene: Scene) -> Rows:
             yield "lost to flank friction", f"{100 * loss:.3g} %", "of the drive's work, at a constant force"
     if not has_joint_friction(scene):
         return
-    where = "at the load of the initial speed" if scene.drive and scene.drive.law else "under the mean drive"
+    where = "at the load of the initial speed" if scene.drive.law else "under the mean drive"
     for joint, load in joint_loads(scene, mean_force(scene)):
         torque = f"friction takes {joint.torque(load):.4g} N m"
         yield f"load of the {joint.name}", f"{load * 1e6:.4g} uN", f"{torque} of its shaft, {where}"

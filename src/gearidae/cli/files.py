@@ -1,4 +1,4 @@
-"""``gearidae init`` and ``gearidae info``: one file in, or out."""
+"""``gearidae init``, ``gearidae info`` and ``gearidae schema``: one file in, or out."""
 
 from __future__ import annotations
 
@@ -15,8 +15,7 @@ from gearidae.archive.target import whole_file
 from gearidae.cli.codes import DONE
 from gearidae.cli.machine import archive_facts, product_facts, say_json
 from gearidae.cli.output import say, show_rows
-from gearidae.cli.tables import show_outcomes, show_summary
-from gearidae.cli.validity_table import show_validity
+from gearidae.cli.tables import show_outcomes, show_summary, show_validity
 from gearidae.errors import SceneError
 from gearidae.records import ROWS, Events
 from gearidae.runs.kept_validity import validity_of
@@ -171,3 +170,33 @@ def _unit(key: str) -> str:
 
     unit = describe_key(key).unit
     return "" if unit == "1" else unit
+
+
+def write_schema(output: Path | None, *, overwrite: bool) -> int:
+    """Print the JSON Schema of case files, or write it to a file.
+
+    Parameters
+    ----------
+    output : Path or None
+        File to write; None to print it.
+    overwrite : bool
+        Whether the file may be replaced.
+
+    Returns
+    -------
+    int
+        Exit code.
+
+    Raises
+    ------
+    SceneError
+        If the file exists or cannot be written.
+    """
+    text = json.dumps(gd.Scene.json_schema(), indent=2)
+    if output is None:
+        say(text)
+        return DONE
+    with whole_file(output, overwrite=overwrite, name="schema", remedy="allow --overwrite") as part:
+        part.write_text(text + "\n", encoding="utf-8")
+    say(f"Schema: {output}")
+    return DONE

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gearidae.analysis.verdict import outcomes
-from gearidae.archive.energy import energy_balance
 from gearidae.archive.run_summary import account
 from gearidae.archive.select import scene_of, swept_dims
+from gearidae.archive.totals import energy_balance
 from gearidae.cli.output import say
 from gearidae.studies.products import answer
 

@@ -1,4 +1,4 @@
-"""``gearidae plot``: an archive, a coating map, a life or a posterior as a picture."""
+"""``gearidae plot`` and ``gearidae report``: a file of runs or of a study as a picture or a page."""
 
 from __future__ import annotations
 
@@ -115,3 +115,42 @@ def draw(
 
 def _is_moving(path: Path) -> bool:
     return path.suffix.lower().removeprefix(".") in MOVING
+
+
+def report_archive(archive: Path, output: Path | None, *, overwrite: bool, teeth: bool | None) -> int:
+    """Write the report of an archive.
+
+    Parameters
+    ----------
+    archive : Path
+        What to report on.
+    output : Path or None
+        HTML file to write; None for the archive's name with ``.html``.
+    overwrite : bool
+        Whether the page may replace a file.
+    teeth : bool or None
+        Whether to show the teeth in mesh; None: unless it takes long.
+
+    Returns
+    -------
+    int
+        Exit code.
+
+    Raises
+    ------
+    SceneError
+        If the archive cannot be read or the page cannot be written.
+    """
+    from gearidae.archive.select import scene_of
+    from gearidae.report import write_report
+    from gearidae.runs.kept_validity import with_validity
+    from gearidae.scene.validity_row import ATTRIBUTE
+    from gearidae.studies.products import open_product
+
+    ds, _ = open_product(archive)
+    if ATTRIBUTE not in ds.attrs:
+        ds = with_validity(ds, gd.Scene.from_dict(scene_of(ds)))
+    target = output or default_output(str(archive), ".html")
+    target = write_report(ds, target, overwrite=overwrite, teeth=teeth)
+    say(f"Report: {target}")
+    return DONE

@@ -8,7 +8,6 @@ import gearidae as gd
 from gearidae.cli.case import check_dask, default_output, read_scene
 from gearidae.cli.codes import DONE, UNFINISHED
 from gearidae.cli.output import complain, is_quiet, say, show_rows
-from gearidae.cli.request import Request
 from gearidae.cli.simulation import announce
 from gearidae.cli.tables import name_failures
 from gearidae.runs.executors import check_jobs
@@ -18,6 +17,7 @@ from gearidae.studies.study import Call
 if TYPE_CHECKING:
     import xarray as xr
 
+    from gearidae.cli.study_commands import Request
     from gearidae.studies.study import Study
 
 

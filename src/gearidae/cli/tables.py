@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import xarray as xr
 from rich import box
 from rich.table import Table
+from rich.text import Text
 
 from gearidae.analysis.verdict import outcomes
 from gearidae.analysis.verdict.table import cells, headings
@@ -16,6 +17,10 @@ from gearidae.archive.specimen import specimen_note
 from gearidae.archive.summary_rows import summary_rows
 from gearidae.cli.output import complain, say, show, show_rows
 from gearidae.scene.validity_row import ATTRIBUTE, mean_note, rows_from_json
+
+if TYPE_CHECKING:
+    from gearidae.scene.validity_row import ValidityRow
+
 
 _NAMED = 3
 """Failed members that are named."""
@@ -83,3 +88,22 @@ def label_text(label: Mapping[str, Any]) -> str:
 
 def _plain(value: Any) -> str:
     return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def show_validity(rows: Sequence[ValidityRow], *, about: str = "") -> None:
+    """Print the limits of the model; an exclamation mark marks a limit that is exceeded.
+
+    Parameters
+    ----------
+    about : str, optional
+        Contact that they are computed for, for the caption.
+    """
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
+    for heading in ("How far the model holds", "value", "", "limit", "what follows"):
+        table.add_column(heading)
+    for row in rows:
+        mark = "" if row.holds else "!"
+        table.add_row(*(Text(cell) for cell in (row.quantity, row.value, mark, row.limit, row.verdict)))
+    if about:
+        table.caption, table.caption_justify = f"Contact {about}. ! marks a limit that is exceeded.", "left"
+    show(table)

@@ -4,6 +4,7 @@ from gearidae.engine.backend import choose_backend, follow, kept_at, outlook, so
 from gearidae.engine.continuing import end_of, refuse_other_bodies
 from gearidae.engine.run_ends import Ended, OnBlock
 from gearidae.engine.setup.start import AT_ONCE, Start
+from gearidae.engine.teeth import states_at
 
 __all__ = [
     "AT_ONCE",
@@ -17,4 +18,5 @@ __all__ = [
     "outlook",
     "refuse_other_bodies",
     "solve",
+    "states_at",
 ]

@@ -16,7 +16,7 @@ from gearidae.engine.changeover import change_over, deepen, lighten
 from gearidae.engine.collecting import Collector
 from gearidae.engine.continuing import checkpoint_of_start, knots_at_start, problem_from
 from gearidae.engine.drivers import formulas, load_driver, native_formulas, ready_driver
-from gearidae.engine.integrate.driver import Block, Ending
+from gearidae.engine.integrate.driver import Block, Ending, SampleReader
 from gearidae.engine.run_ends import Ended, OnBlock
 from gearidae.engine.setup.problem import Problem
 from gearidae.engine.setup.start import AT_ONCE, Start
@@ -88,6 +88,7 @@ def run_blocks(
     backend: str,
     statistics: Statistics,
     resume: NDArray[np.float64] | None = None,
+    reader: SampleReader | None = None,
 ) -> Iterator[Block]:
     """Run a problem and yield its output block by block; `statistics` is filled in on the way.
 
@@ -103,6 +104,8 @@ def run_blocks(
         From `choose_backend`.
     resume : ndarray, optional
         Checkpoint of an earlier run of the same problem with the same settings and backend, to resume from.
+    reader : SampleReader, optional
+        Reads the model at some of the samples.
     """
     driver = ready_driver(backend, problem)
     statistics.method = formulas(problem, backend)
@@ -115,7 +118,7 @@ def run_blocks(
         if resume is not None:
             current, resume = _with_its_model(problem, current, resume)
         goes_on = False
-        for block in driver(current, rtol, samples, statistics, resume):
+        for block in driver(current, rtol, samples, statistics, resume, reader=reader):
             resume = block.checkpoint
             goes_on = resume is not None and _changes_model(problem, current, statistics.ending)
             if goes_on:  # that is no ending
@@ -169,6 +172,7 @@ def follow(
     on_progress: Callable[[float, int], None] | None = None,
     start: Start = AT_ONCE,
     on_block: OnBlock | None = None,
+    reader: SampleReader | None = None,
 ) -> Ended:
     """Run a scene and hand every block of output to `take` as soon as it is there.
 
@@ -183,6 +187,8 @@ def follow(
         Where the run begins, or is resumed; by default it begins at time 0.
     on_block : callable, optional
         Called with every block of output, after `take`; True ends the run there, with the status ``stopped``.
+    reader : SampleReader, optional
+        Reads the model at some of the samples.
 
     Returns
     -------
@@ -213,7 +219,8 @@ def follow(
         if resume is None and start.scene is not None:
             resume = checkpoint_of_start(scene, start)
             at_start = knots_at_start(problem)
-        for block in run_blocks(problem, scene.run.rtol, scene.run.sample_count, name, statistics, resume):
+        run = scene.run
+        for block in run_blocks(problem, run.rtol, run.sample_count, name, statistics, resume, reader):
             if len(at_start):
                 block.events, at_start = np.concatenate([at_start, block.events]), Events.no_table()
             take(block, statistics, start.wall_time + time.perf_counter() - started)

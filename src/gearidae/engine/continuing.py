@@ -37,7 +37,7 @@ from gearidae.engine.model.record_types import FREE
 from gearidae.engine.model.state import (
     EMPTY,
     EXTREMES,
-    GEARS,
+    MOTION,
     PHASE,
     STATE,
     STATE_FIELDS,
@@ -86,8 +86,7 @@ def end_of(scene: Scene, words: Floats, began: float) -> Start:
     s = problem.model.state
     end = began + scene.run.duration
     time = end if s.time == problem.model.scene.end else float(s.time) * problem.time_unit
-    place = float(y[PHASE] + s.turns) if problem.model.scene.kind == GEARS else 0.0
-    return Start(time, place, scene, words, began)
+    return Start(time, float(y[PHASE] + s.turns), scene, words, began)
 
 
 def problem_from(scene: Scene, start: Start) -> Problem:
@@ -108,7 +107,7 @@ def checkpoint_of_start(scene: Scene, start: Start) -> Floats:
     assert start.scene is not None
     assert start.words is not None
     old, old_y = _restored(start.scene, start.words, start.began)
-    if old.model.scene.kind == GEARS:
+    if old.model.scene.follow.gear != 0:
         settle_standing_at(old.located.place, float(old.model.state.time))
     new = problem_from(scene, start)
     new.prepare(scene.run.rtol, scene.run.sample_count)
@@ -196,9 +195,8 @@ class _Units:
 
     def convert_motion(self, old: Floats, new: Floats) -> None:
         """Write the motion's states; deflections stay zero."""
-        motion = min(4, old.size, new.size) if new.size != 2 and old.size != 2 else 2
-        new[:motion] = old[:motion]
-        for place in (V, W) if motion == 4 else (V,):
+        new[:MOTION] = old[:MOTION]
+        for place in (V, W):
             new[place] = old[place] * self.speed
 
     def convert_exposures(self, m: Model) -> None:
@@ -297,8 +295,6 @@ def _begin_balance(m: Model, y: Floats) -> None:
 
 def _hold_or_slip(source: Model, m: Model, time: float, y: Floats) -> None:
     """Set the directions of slip where other elements resist than before, or what holds the gears no longer does."""
-    if m.scene.kind != GEARS:
-        return
     if m.scene.friction.on == 0:
         m.state.hold, m.state.slip = FREE, 1.0
     elif m.scene.friction.rubs == source.scene.friction.rubs and (m.scene.dry != 0) == (

@@ -11,7 +11,6 @@ from types import ModuleType
 
 from gearidae.engine.compiling import HOW_LONG, SOLVER, compiling, make_part_ready
 from gearidae.engine.integrate.driver import Block
-from gearidae.engine.model.state import GEARS
 from gearidae.engine.setup.problem import Problem
 from gearidae.records import Statistics
 
@@ -74,7 +73,7 @@ def formulas(problem: Problem, backend: str) -> str:
     return native_formulas(problem.method) or BDF
 
 
-_ready: set[tuple[str, bool, int, bool]] = set()
+_ready: set[tuple[str, bool, bool]] = set()
 
 
 def ready_driver(backend: str, problem: Problem) -> Callable[..., Iterator[Block]]:
@@ -89,10 +88,9 @@ def ready_driver(backend: str, problem: Problem) -> Callable[..., Iterator[Block
     as_ida = backend == "native" and native_formulas(problem.method) != ADAMS
     if as_ida:
         run = partial(run, as_ida=True)
-    kind = (backend, as_ida, int(problem.model.scene.kind), bool(problem.model.scene.nodes > 0))
+    kind = (backend, as_ida, bool(problem.model.scene.nodes > 0))
     if kind not in _ready:
-        bodies = "gear pairs" if kind[2] == GEARS else "rollers"
-        with compiling(f"the solver for {bodies}{' in elastic contact' if kind[3] else ''}", "some seconds"):
+        with compiling(f"the solver{' for elastic contacts' if kind[2] else ''}", "some seconds"):
             for _ in islice(run(problem.shortened(TINY), 1e-3, 2, Statistics()), TINY_BLOCKS):
                 pass
         _ready.add(kind)

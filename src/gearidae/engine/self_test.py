@@ -30,7 +30,7 @@ from gearidae.engine.integrate import native
 from gearidae.engine.setup.build import make_problem
 from gearidae.engine.setup.problem import Problem
 from gearidae.records import EVENT, EventKind, Statistics
-from gearidae.scene import Scene
+from gearidae.scene import GearScene
 
 TRIED: Final = ("linux",)
 """Systems on which the driver has been run; on others the first trial is made in a process of its own."""
@@ -170,9 +170,9 @@ def examine(way: str) -> str:
     return ""
 
 
-def _scene() -> Scene:
+def _scene() -> GearScene:
     """Make a gear pair in flight, its teeth far apart."""
-    return Scene.from_dict(
+    return GearScene.from_dict(
         {
             "name": "self-test",
             "gears": {
@@ -216,11 +216,8 @@ def _run(way: str, rtol: float) -> TrialResult:
     return TrialResult("finished", error, _mark_error(scene, events) / rtol, statistics.steps, order)
 
 
-def _error(scene: Scene, problem: Problem, rows: NDArray[np.float64]) -> float:
+def _error(scene: GearScene, problem: Problem, rows: NDArray[np.float64]) -> float:
     """Largest error of all samples, over what counts as one."""
-    assert scene.gears
-    assert scene.drive
-    assert scene.initial
     m, omega = problem.model.scene, 2.0 * math.pi * FREQUENCY
     ratio = float(m.gear_radius / m.pinion_radius)
     amplitude = scene.drive.harmonic[0].amplitude
@@ -235,10 +232,8 @@ def _error(scene: Scene, problem: Problem, rows: NDArray[np.float64]) -> float:
     return float(max(abs(gap).max() / length, abs(slip).max() / speed, abs(gear).max() / speed))
 
 
-def _mark_error(scene: Scene, events: NDArray[np.float64]) -> float:
+def _mark_error(scene: GearScene, events: NDArray[np.float64]) -> float:
     """Largest error of the times at which pairs enter the mesh, over the run's duration; infinite if one is missing."""
-    assert scene.initial
-    assert scene.gears
     turn = 2.0 * math.pi / scene.gears.gear_teeth / scene.initial.gear_speed
     entries = events[(events[:, EVENT.kind] == EventKind.MESH_ENTRY) & (events[:, EVENT.flank] == 0)]
     wanted = (np.arange(1, math.ceil(scene.run.duration / turn + 1.0)) - scene.initial.mesh_phase) * turn

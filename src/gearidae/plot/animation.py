@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 from pathlib import Path
 
@@ -12,7 +11,7 @@ from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 
 from gearidae.errors import SceneError
 from gearidae.plot.files import BY_FFMPEG, MOVING, whole_file
-from gearidae.plot.teeth_view import TeethView, mesh_states
+from gearidae.plot.teeth_view import TeethView, mesh_states, recorded_until
 
 _MOST_FRAMES = 5000
 
@@ -55,8 +54,9 @@ def animate_teeth(
     Raises
     ------
     SceneError
-        If the dataset is of a roller, of several runs, or has no samples; if a time lies outside of them, a number
-        makes no sense, or the file exists and may not be replaced, is of another kind or cannot be written.
+        If the dataset is of a roller, of several runs, or has no samples, or its run cannot be repeated; if a time lies
+        outside of them, a number makes no sense, or the file exists and may not be replaced, is of another kind or
+        cannot be written.
     """
     if not 2 <= frames <= _MOST_FRAMES:
         raise SceneError("frames", frames, f"must lie in 2..{_MOST_FRAMES}")
@@ -64,10 +64,10 @@ def animate_teeth(
         raise SceneError("rate", rate, "must be 1 to 100 pictures per second")
     with whole_file(path, MOVING, overwrite=overwrite) as part:
         writer = _writer(Path(path), rate)
-        first, last = (each.time for each in mesh_states(ds, [start, math.inf if stop is None else stop]))
-        if not first < last:
-            raise SceneError("stop", last, f"must come after the start, {first:g} s")
-        states = mesh_states(ds, np.linspace(first, last, frames))
+        last = recorded_until(ds) if stop is None else stop
+        if not start < last:
+            raise SceneError("stop", last, f"must come after the start, {start:g} s")
+        states = mesh_states(ds, np.linspace(start, last, frames))
         view = TeethView(ds, states)
         with writer.saving(view.figure, str(part), dpi):
             for state in states:

@@ -3,7 +3,7 @@
 The model puts the roughness of both flanks on one, and knows of its asperities density, tip radius and the
 distribution of their heights; the single asperities drawn are a sample of these. Which of a sample would be pressed,
 stretched or free follows from the gap and the joined height. A population's asperities are drawn as they are, all that
-stand side by side across the face width; the archive determines which of them are joined.
+stand side by side across the face width, with marks on those that are joined.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 
 from gearidae.arrays import Floats
 from gearidae.drawing.style import NEGATIVE, POSITIVE
+from gearidae.populations.met_flank import MetFlank, contact_arc, met_flank
 from gearidae.records import Flank
-from gearidae.scene import MATERIAL_NAMES, Scene
-from gearidae.studies.joined_asperities import MetFlank, contact_arc, met_flank
-from gearidae.studies.tooth_states import ToothContact
+from gearidae.records.tooth_states import ToothContact
+from gearidae.scene import MATERIAL_NAMES, GearScene
 
 FLANKS = "#d3e5f3", "#deb968"
 """Colours of pinion and gear, one lighter than the other in grey."""
@@ -33,14 +33,14 @@ COATING = "#007a5a"
 """Colour of the monolayer."""
 
 
-def half_width(scene: Scene) -> float:
+def half_width(scene: GearScene) -> float:
     """Half the width of the close-ups of a scene [m], the same for all of them."""
     geometry = scene.geometry
     pinion, gear = geometry.tangent_pinion, geometry.tangent_gear
     return _WIDTH * math.sqrt(2.0 * pinion * gear / (pinion + gear) * scene.surface.roughness)
 
 
-def rough_sample(scene: Scene, pair: int) -> tuple[Floats, Floats, NDArray[np.int64]]:
+def rough_sample(scene: GearScene, pair: int) -> tuple[Floats, Floats, NDArray[np.int64]]:
     """Draw a row of asperities for a pair of teeth, always the same for the same pair.
 
     Parameters
@@ -71,7 +71,7 @@ def rough_sample(scene: Scene, pair: int) -> tuple[Floats, Floats, NDArray[np.in
     return x, height - np.array([one.gap_offset for one in order])[drawn], number
 
 
-def flank_asperities(scene: Scene, pair: int, flank: Flank) -> MetFlank:
+def flank_asperities(scene: GearScene, pair: int, flank: Flank) -> MetFlank:
     """Return the asperities to draw of a pair: of a population those of its flank, of other models a sample."""
     if scene.contact.is_discrete:
         return met_flank(scene, pair, flank)
@@ -79,23 +79,22 @@ def flank_asperities(scene: Scene, pair: int, flank: Flank) -> MetFlank:
     return MetFlank(x, height, np.full_like(x, scene.surface.asperity_radius), material)
 
 
-def touching_arc(scene: Scene, place: float) -> float:
+def touching_arc(scene: GearScene, place: float) -> float:
     """Return where a pair touches among the asperities to draw [m]: on a population's flank, or amid a sample."""
     return contact_arc(scene, place) if scene.contact.is_discrete else 0.0
 
 
-def joined_asperities(scene: Scene, contact: ToothContact) -> float:
+def joined_asperities(scene: GearScene, contact: ToothContact) -> float:
     """Return how many asperities of a pair are joined: of a population, else on average.
 
     Returns
     -------
     float
         ``N L sqrt(2 R sigma)`` times the integral of the share of heights above ``zeta + s^2`` over s; far below one
-        where the surfaces hardly touch. NaN where the record does not tell.
+        where the surfaces hardly touch. NaN where the bodies deflect.
     """
-    assert scene.gears is not None
     if scene.contact.is_discrete:
-        return math.nan if contact.asperities is None else float(len(contact.asperities))
+        return float(len(contact.asperities or ()))
     sigma = scene.surface.roughness
     s, step = np.linspace(-6.0, 6.0, 1201, retstep=True)
     materials = {one.name: one for one in scene.materials()}
@@ -119,7 +118,7 @@ class _Row(NamedTuple):
     pressed: NDArray[np.bool_]
 
 
-def _sampled_row(scene: Scene, contact: ToothContact) -> _Row:
+def _sampled_row(scene: GearScene, contact: ToothContact) -> _Row:
     """Return a sample of the model's asperities."""
     row = flank_asperities(scene, contact.pair, contact.flank)
     rise = row.arc**2 / (2.0 * contact.radius)
@@ -128,7 +127,7 @@ def _sampled_row(scene: Scene, contact: ToothContact) -> _Row:
     return _Row(*row, stretched, row.height > contact.gap + rise)
 
 
-def _real_row(scene: Scene, contact: ToothContact) -> _Row:
+def _real_row(scene: GearScene, contact: ToothContact) -> _Row:
     """Return the asperities of a population beside a contact."""
     flank = flank_asperities(scene, contact.pair, contact.flank)
     joined = np.zeros(flank.arc.size, np.bool_)
@@ -142,7 +141,7 @@ def _real_row(scene: Scene, contact: ToothContact) -> _Row:
     )
 
 
-def close_up(ax: Axes, scene: Scene, contact: ToothContact) -> float:
+def close_up(ax: Axes, scene: GearScene, contact: ToothContact) -> float:
     """Draw one pair of teeth close up.
 
     Parameters

@@ -18,11 +18,10 @@ from gearidae.drawing.style import NEGATIVE, POSITIVE, runs_of, scale_for, tidy
 from gearidae.plot.asperities import COATING, FLANKS, close_up, joined_asperities
 from gearidae.plot.tooth_shape import GearPicture, contact_points, mesh_picture
 from gearidae.records import Flank
-from gearidae.scene import Scene
-from gearidae.studies.tooth_states import ContactState, MeshState, ToothContact
+from gearidae.records.tooth_states import ContactState, MeshState, ToothContact
+from gearidae.scene import GearScene, require_gears
 
 STATE_WORDS = {
-    ContactState.UNRECOVERABLE: "not recoverable from the archive",
     ContactState.OPEN: "open",
     ContactState.LOADING: "loading",
     ContactState.PARTLY_STRETCHED: "partly stretched",
@@ -30,7 +29,6 @@ STATE_WORDS = {
 }
 """States of a contact in words."""
 _MARKS = {
-    ContactState.UNRECOVERABLE: ("X", "0.6"),
     ContactState.OPEN: ("o", "white"),
     ContactState.LOADING: ("o", POSITIVE),
     ContactState.PARTLY_STRETCHED: ("^", "#E69F00"),
@@ -64,13 +62,14 @@ def teeth(ds: xr.Dataset, *, time: float | None = None) -> Figure:
     Raises
     ------
     SceneError
-        If the dataset is of a roller, of several runs, or has no samples, or the time lies outside of them.
+        If the dataset is of a roller, of several runs, or has no samples, the time lies outside of them, or the run
+        cannot be repeated.
 
     Notes
     -----
-    Force and state of each pair are reconstructed as `gearidae.analysis.tooth_contacts` says; the picture names those
-    that are not recoverable. The asperities drawn are a sample of the model's; those of a population are its own, with
-    the joined ones marked, as the recorded events determine.
+    Force and state of each pair are those of the model, for which the scene runs again up to the time, see
+    `gearidae.analysis.tooth_contacts`. The asperities drawn are a sample of the model's; those of a population are its
+    own, with the joined ones marked.
     """
     (state,) = mesh_states(ds, [math.inf if time is None else time])
     view = TeethView(ds, [state])
@@ -81,17 +80,23 @@ def teeth(ds: xr.Dataset, *, time: float | None = None) -> Figure:
 def mesh_states(ds: xr.Dataset, times: ArrayLike) -> list[MeshState]:
     """Return the states of the pairs of teeth at some times, from `gearidae.analysis.tooth_contacts`.
 
-    The force law and what is compiled of it are loaded only here: the other pictures do without.
+    The engine is loaded only here: the other pictures do without.
     """
     from gearidae.studies._tooth_contacts import tooth_contacts
 
     return tooth_contacts(ds, times)
 
 
-def pairs_at_most(scene: Scene) -> int:
+def recorded_until(ds: xr.Dataset) -> float:
+    """Time of the last sample of a run of gears [s]."""
+    from gearidae.studies._tooth_contacts import last_time
+
+    return last_time(ds)
+
+
+def pairs_at_most(scene: GearScene) -> int:
     """Return how many pairs of one flank can be near each other at a time: one to three."""
     geometry = scene.geometry
-    assert scene.mesh is not None
     end = math.sqrt(2.0 * scene.mesh.tip_relief_radius * _ROUNDED * scene.surface.roughness)
     return min(math.ceil((geometry.path_length + 2.0 * end) / geometry.base_pitch), 3)
 
@@ -118,10 +123,9 @@ class TeethView:
     """
 
     def __init__(self, ds: xr.Dataset, states: Sequence[MeshState]) -> None:
-        self._scene = run_scene(ds)
+        self._scene = require_gears(run_scene(ds))
         self._picture = mesh_picture(self._scene)
-        forces = [abs(one.force) for state in states for one in state.contacts if math.isfinite(one.force)]
-        self._largest = max(forces, default=0.0)
+        self._largest = max((abs(one.force) for state in states for one in state.contacts), default=0.0)
         self._places = pairs_at_most(self._scene)
         self.figure = new_picture((7.6, 7.2))
         self._mesh = self.figure.add_axes((0.015, 0.525, 0.97, 0.43))
@@ -130,7 +134,7 @@ class TeethView:
             self.figure.add_axes((0.085 + k * width, 0.245, width - 0.1, 0.145)) for k in range(self._places)
         ]
         self._time_factor, self._cursor = _speed_strip(self.figure.add_axes((0.085, 0.055, 0.9, 0.08)), ds)
-        self._legend(all(each.recovered for each in states))
+        self._legend()
 
     def draw(self, state: MeshState) -> None:
         """Draw a state in place of the one before."""
@@ -147,16 +151,11 @@ class TeethView:
         self._cursor.set_xdata([state.time * self._time_factor] * 2)
         self._mesh.set_title(_headline(state), loc="left", fontsize="medium")
 
-    def _legend(self, recovered: bool) -> None:
+    def _legend(self) -> None:
         """Explain the marks of the mesh, and below the close-ups their colours."""
-        marks = {
-            state: mark
-            for state, mark in _MARKS.items()
-            if state != ContactState.UNRECOVERABLE or not recovered
-        }
         handles = [
             Line2D([], [], marker=mark, color="0.1", mfc=face, linestyle="", label=STATE_WORDS[state])
-            for state, (mark, face) in marks.items()
+            for state, (mark, face) in _MARKS.items()
         ]
         asperities = [
             Line2D([], [], color=colour, linewidth=3.0, label=label)
@@ -301,8 +300,6 @@ def _joined_words(one: ToothContact) -> str:
 
 
 def _force(one: ToothContact) -> str:
-    if not math.isfinite(one.force):
-        return "force not recoverable from the archive"
     if one.force == 0.0:
         return "no force"
     return f"{'pushes' if one.force > 0.0 else 'pulls'} with {_quantity(abs(one.force), 'N')}"

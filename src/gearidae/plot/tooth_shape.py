@@ -21,7 +21,7 @@ import numpy as np
 from gearidae.arrays import Floats
 from gearidae.mesh.involute import Geometry
 from gearidae.records import Flank
-from gearidae.scene import Scene
+from gearidae.scene import GearScene
 
 _FLANK_POINTS = 40
 _DEDENDUM = 1.25  # modules
@@ -111,7 +111,7 @@ class GearPicture:
         return np.array([beyond * across, -beyond * math.sin(angle)])
 
 
-def mesh_picture(scene: Scene) -> GearPicture:
+def mesh_picture(scene: GearScene) -> GearPicture:
     """Lay out the gears of a scene for drawing.
 
     Parameters
@@ -125,7 +125,6 @@ def mesh_picture(scene: Scene) -> GearPicture:
         If the scene has no gears.
     """
     geometry = scene.geometry
-    assert scene.mesh is not None
     rounding = scene.mesh.tip_relief_radius, _ROUNDED * scene.surface.roughness
     half_pitch = 0.5 * geometry.base_pitch
     return GearPicture(

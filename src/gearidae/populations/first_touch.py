@@ -11,13 +11,13 @@ from gearidae.asperities import law_of
 from gearidae.mesh.involute import curvature_radii, flank_arc, separation
 from gearidae.populations.flanks import flanks_of
 from gearidae.populations.materials import materials_at
-from gearidae.scene import MATERIAL_NAMES, Scene
+from gearidae.scene import MATERIAL_NAMES, GearScene
 
 _BEYOND: Final = 1e-6
 """Roughnesses by which the gap is wider, so that rounding joins nothing."""
 
 
-def first_touch(scene: Scene) -> float:
+def first_touch(scene: GearScene) -> float:
     """Gap of the drive flank at which the first asperity is about to join.
 
     Parameters
@@ -31,8 +31,6 @@ def first_touch(scene: Scene) -> float:
         Largest ``z - x^2 / (2 R) + d_on - s`` of all asperities of the pairs in mesh [m], with the tip relief s of the
         pair; with radii that differ, the joining distance d_on is that of the largest tip of a flank.
     """
-    assert scene.initial is not None
-    assert scene.mesh is not None
     geometry, sigma, flanks = scene.geometry, scene.surface.roughness, flanks_of(scene)
     by_name = {one.name: one for one in scene.materials()}
     whole, phase = divmod(scene.initial.mesh_phase, 1.0)

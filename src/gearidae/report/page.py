@@ -13,7 +13,9 @@ from gearidae.analysis.verdict.headline import headline
 from gearidae.archive.select import scene_of
 from gearidae.archive.specimen import specimen_note
 from gearidae.archive.target import whole_file
+from gearidae.errors import SceneError
 from gearidae.plot.overview import usual_pictures
+from gearidae.progress import in_words
 from gearidae.report import html
 from gearidae.report.life import life_table, life_viewer
 from gearidae.report.pictures import figures, pictures
@@ -29,15 +31,17 @@ from gearidae.report.tables import (
     summary_tables,
     validity_table,
 )
-from gearidae.report.teeth import pack_teeth
+from gearidae.report.teeth import pack_runs, runs_with_teeth, time_to_repeat
 from gearidae.studies.declared import studies
 from gearidae.studies.products import answer, kind_of
 
 _POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
 """What the browser may load for the page: nothing from anywhere."""
+_SOON = 60.0
+"""Wall time [s] up to which runs are repeated for the view of the teeth without being asked for."""
 
 
-def build_report(ds: xr.Dataset, *, most_values: int = MOST_VALUES) -> str:
+def build_report(ds: xr.Dataset, *, most_values: int = MOST_VALUES, teeth: bool | None = None) -> str:
     """Make one self-contained HTML page about a dataset.
 
     Parameters
@@ -47,6 +51,9 @@ def build_report(ds: xr.Dataset, *, most_values: int = MOST_VALUES) -> str:
         is left out.
     most_values : int, optional
         Numbers to embed at most in the viewer of the time series.
+    teeth : bool, optional
+        Whether to show the teeth in mesh, for which the shown runs (seven at most) run again; by default where they
+        have taken no more than a minute. What the page does not show it says.
 
     Returns
     -------
@@ -64,7 +71,7 @@ def build_report(ds: xr.Dataset, *, most_values: int = MOST_VALUES) -> str:
     sections = (
         html.section("outcome", "Outcome", _specimen(ds), outcome_table(ds), summary_tables(ds)),
         html.section("series", "Time series", _viewer(ds, most_values)),
-        html.section("teeth", "Teeth in mesh", _teeth(ds)),
+        html.section("teeth", "Teeth in mesh", _teeth(ds, teeth)),
         html.section("pictures", "Pictures", pictures(ds)),
         html.section("events", "Events", event_table(ds)),
     )
@@ -137,7 +144,9 @@ def _page(ds: xr.Dataset, sentence: str, sections: Sequence[str], scripts: Seque
 """
 
 
-def write_report(ds: xr.Dataset, path: str | os.PathLike[str], *, overwrite: bool = False) -> Path:
+def write_report(
+    ds: xr.Dataset, path: str | os.PathLike[str], *, overwrite: bool = False, teeth: bool | None = None
+) -> Path:
     """Write the report of a dataset to a file.
 
     Parameters
@@ -148,6 +157,8 @@ def write_report(ds: xr.Dataset, path: str | os.PathLike[str], *, overwrite: boo
         HTML file to write.
     overwrite : bool, optional
         Whether a file that is there may be replaced.
+    teeth : bool, optional
+        As for `gearidae.report.build_report`.
 
     Returns
     -------
@@ -160,7 +171,7 @@ def write_report(ds: xr.Dataset, path: str | os.PathLike[str], *, overwrite: boo
         If the dataset carries no scene, the file exists and may not be replaced, or it cannot be written.
     """
     with whole_file(path, overwrite=overwrite, name="report") as part:
-        part.write_text(build_report(ds), encoding="utf-8")
+        part.write_text(build_report(ds, teeth=teeth), encoding="utf-8")
     return Path(path)
 
 
@@ -177,10 +188,19 @@ def _viewer(ds: xr.Dataset, most_values: int) -> str:
     )
 
 
-def _teeth(ds: xr.Dataset) -> str:
-    """Place the view of the teeth and its data; there is none for rollers."""
-    data = pack_teeth(ds)
-    return '<div id="teeth-viewer"></div>\n' + html.json_block("teeth-data", data) if data else ""
+def _teeth(ds: xr.Dataset, wanted: bool | None) -> str:
+    """Place the view of the teeth and its data, or say why there is none; rollers have no teeth."""
+    shown = runs_with_teeth(ds) if wanted is not False else []
+    if not shown:
+        return ""
+    if wanted is None and (seconds := time_to_repeat(shown)) > _SOON:
+        again = f"run again, which takes about {in_words(seconds)}: gearidae report --teeth (teeth=True)"
+        return html.paragraph(f"Not shown. For the teeth in mesh the scene must {again}.")
+    try:
+        data = pack_runs(shown)
+    except SceneError as error:
+        return html.paragraph(f"Not shown. {error}")
+    return '<div id="teeth-viewer"></div>\n' + html.json_block("teeth-data", data)
 
 
 def _resource(name: str) -> str:

@@ -8,7 +8,7 @@
   const data = JSON.parse(source.textContent);
   const ACROSS = 4.6, DOWN = 1.9, UP = 2.0, TEETH = 5, LONGEST = 1.4; // modules; teeth on either side
   const BELOW = 3.5, ABOVE = 12; // roughnesses
-  const UNRECOVERABLE = -1, OPEN = 0, LOADING = 1, PARTLY = 2, FULLY = 3, COAST = 1;
+  const OPEN = 0, LOADING = 1, PARTLY = 2, FULLY = 3, COAST = 1;
   const PLAYED = 14; // seconds for what is in view
   const FRAME = data.columns.frame.length, PAIR = data.columns.pair.length;
   const still = window.matchMedia("(prefers-reduced-motion: reduce)");
@@ -24,7 +24,7 @@
       run.joinedAsperities = decode(run.joined);
       run.largest = 0;
       for (let i = 0; i < run.rows; i++) {
-        for (const pair of pairsOf(i)) if (Number.isFinite(pair.force)) run.largest = Math.max(run.largest, Math.abs(pair.force));
+        for (const pair of pairsOf(i)) run.largest = Math.max(run.largest, Math.abs(pair.force));
       }
     }
     frame = Math.min(frame, run.rows - 1);
@@ -146,7 +146,6 @@
     pen.beginPath();
     if (state === PARTLY) { pen.moveTo(a, b - 7); pen.lineTo(a + 7, b + 6); pen.lineTo(a - 7, b + 6); pen.closePath(); }
     else if (state === FULLY) pen.rect(a - 6, b - 6, 12, 12);
-    else if (state === UNRECOVERABLE) { pen.moveTo(a - 6, b - 6); pen.lineTo(a + 6, b + 6); pen.moveTo(a - 6, b + 6); pen.lineTo(a + 6, b - 6); }
     else pen.arc(a, b, 6, 0, 2 * Math.PI);
     pen.fill();
     pen.stroke();
@@ -258,8 +257,7 @@
 
   function wordsOf(pair) {
     const words = ["Pair " + pair.number + ", " + (pair.flank === COAST ? "coast" : "drive") + " flank: gap " + quantity(pair.gap, "m")];
-    if (!Number.isFinite(pair.force)) words.push("force not recoverable from the archive");
-    else words.push(pair.force === 0 ? "no force" : (pair.force > 0 ? "pushes with " : "pulls with ") + quantity(Math.abs(pair.force), "N"));
+    words.push(pair.force === 0 ? "no force" : (pair.force > 0 ? "pushes with " : "pulls with ") + quantity(Math.abs(pair.force), "N"));
     const parts = [["bare", pair.bare], ["monolayer", pair.coated], ["monolayer on bare", pair.mixed]].filter((part) => !Number.isNaN(part[1]));
     const same = parts.every((part) => part[1] === parts[0][1]);
     words.push(same ? data.words[parts[0][1]] : parts.map(([name, state]) => name + " " + data.words[state]).join(", "));

@@ -11,19 +11,19 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gearidae.archive.select import is_roller, motion_samples, run_scene
+from gearidae.archive.select import is_roller, motion_samples, run_scene, run_value
 from gearidae.arrays import Floats
-from gearidae.drawing.style import runs_of
+from gearidae.drawing.style import Run, runs_of
 from gearidae.errors import SceneError
 from gearidae.plot.asperities import flank_asperities, half_width, joined_asperities, touching_arc
 from gearidae.plot.teeth_view import STATE_WORDS, mesh_states, nearest_pairs, pairs_at_most
 from gearidae.plot.tooth_shape import ToothedWheel, mesh_picture
 from gearidae.records import sampled_columns
-from gearidae.scene import MATERIAL_NAMES, Scene
+from gearidae.scene import MATERIAL_NAMES, GearScene, require_gears
 
 if TYPE_CHECKING:
     from gearidae.records import Flank
-    from gearidae.studies.tooth_states import MeshState, ToothContact
+    from gearidae.records.tooth_states import MeshState, ToothContact
 
 MOST_STATES = 3000
 """States embedded at most, over all runs."""
@@ -50,14 +50,14 @@ PAIR = (
 )
 """Numbers of a pair: number, `Flank`, place, radius, gap [m], force [N], joined heights [m], a `ContactState` each, how
 many asperities are joined (without a population: on average), which row of asperities is drawn, where the pair touches
-in that row [m], and which of the run's ``joined`` are its own. NaN where there is no such pair or part, or where the
-record does not determine it."""
+in that row [m], and which of the run's ``joined`` are its own. NaN where there is no such pair or part, and of joined
+heights where the bodies deflect."""
 _TALLEST = 500
 """Asperities of a row that are embedded at most: the tallest."""
 
 
 def pack_teeth(ds: xr.Dataset, most_states: int = MOST_STATES) -> dict[str, Any]:
-    """Pack the teeth in mesh of all shown runs.
+    """Pack the teeth in mesh of all shown runs, which run again for it.
 
     Parameters
     ----------
@@ -71,17 +71,19 @@ def pack_teeth(ds: xr.Dataset, most_states: int = MOST_STATES) -> dict[str, Any]
     dict
         ``columns`` (`FRAME` and `PAIR`), ``words`` (of the states), and per run its ``label``, what follows from its
         scene (lengths in m, shapes in modules), and ``states``: base64 text of little-endian float32 numbers, row by
-        row. Empty for rollers, and where samples or events have not been kept.
+        row. Empty for rollers, and where samples have not been kept.
+
+    Raises
+    ------
+    SceneError
+        If a run cannot be repeated.
     """
-    if is_roller(ds) or any(
-        name not in ds.variables for name in (*sampled_columns(roller=False), "event_time")
-    ):
-        return {}
-    try:
-        shown = runs_of(ds, "transmission_error")
-    except SceneError:  # no run has samples
-        return {}
-    if not all(motion_samples(run.data) for run in shown):
+    return pack_runs(runs_with_teeth(ds), most_states)
+
+
+def pack_runs(shown: list[Run], most_states: int = MOST_STATES) -> dict[str, Any]:
+    """Pack the teeth in mesh of some runs, as `pack_teeth` does."""
+    if not shown:
         return {}
     share = max(2, most_states // len(shown))
     return {
@@ -91,8 +93,24 @@ def pack_teeth(ds: xr.Dataset, most_states: int = MOST_STATES) -> dict[str, Any]
     }
 
 
+def runs_with_teeth(ds: xr.Dataset) -> list[Run]:
+    """Return the runs whose teeth a report can show: none of rollers, nor where samples have not been kept."""
+    if is_roller(ds) or any(name not in ds.variables for name in sampled_columns(roller=False)):
+        return []
+    try:
+        shown = runs_of(ds, "transmission_error")
+    except SceneError:  # no run has samples
+        return []
+    return shown if all(motion_samples(run.data) for run in shown) else []
+
+
+def time_to_repeat(shown: list[Run]) -> float:
+    """Wall time that some runs have taken [s]."""
+    return sum(float(run_value(run.data, "wall_time")) for run in shown)
+
+
 def _pack_run(run: xr.Dataset, most: int) -> dict[str, Any]:
-    scene = run_scene(run)
+    scene = require_gears(run_scene(run))
     picture, module = mesh_picture(scene), scene.geometry.module
     samples = motion_samples(run)
     # samples themselves and not times between, so that what is shown is what was recorded
@@ -138,7 +156,7 @@ class _Asperities:
         Places and heights of joined asperities of a population, of all pairs one after the other.
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: GearScene) -> None:
         self.scene = scene
         self.rows: dict[str, int] = {}
         self.joined: list[float] = []

@@ -9,10 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearidae.arrays import Floats
-from gearidae.errors import SceneError
 from gearidae.mesh.pair_contact import PairContact, pair_contact
 from gearidae.runs.rubbing import hub_constants, transmitted_share
-from gearidae.scene import Drive, Gears, Load, Scene
+from gearidae.scene import GearScene, RollerScene, Scene, require_gears
 
 _INNERMOST = -8.0  # a gap in roughnesses: teeth pressed deeper do not rest on their asperities
 
@@ -42,11 +41,11 @@ class Rest:
 def rest_of(scene: Scene, error: float = 1e-12) -> Rest:
     """Find the contact that estimates are made for, its gap to an error in roughnesses; bodies are rigid."""
     contact = pair_contact(scene)
-    if scene.roller is not None:
+    if isinstance(scene, RollerScene):
         roller = scene.roller
         gap = contact.closest_gap(roller.height, 0.5 * roller.mass * roller.speed**2)
         return Rest(contact, gap, math.nan if math.isnan(gap) else float(contact.force(gap)), roller.mass)
-    load = mean_force(scene)
+    load = mean_force(require_gears(scene))
     return Rest(contact, contact.resting_gap(load, error), load, effective_mass(scene))
 
 
@@ -68,8 +67,7 @@ def effective_mass(scene: Scene) -> float:
     SceneError
         If the scene has no gears.
     """
-    gears, _, _ = _tables(scene)
-    geometry = scene.geometry
+    gears, geometry = require_gears(scene).gears, scene.geometry
     pinion = geometry.base_radius_pinion**2 / gears.pinion_inertia
     return 1.0 / (pinion + geometry.base_radius_gear**2 / gears.gear_inertia)
 
@@ -96,19 +94,20 @@ def steady_speed(scene: Scene) -> float:
     SceneError
         If the scene has no gears.
     """
-    _, drive, _ = _tables(scene)
+    scene = require_gears(scene)
+    drive = scene.drive
     return balanced_speed(scene, float(_over_run(scene, drive.torque, drive.schedule).mean()))
 
 
-def balanced_speed(scene: Scene, torque: float) -> float:
+def balanced_speed(scene: GearScene, torque: float) -> float:
     """Speed of the gear [rad/s] at which a constant torque of the pinion [N m] is balanced, see `steady_speed`."""
     return _balance(scene, torque, transmitted_share(scene, mean_force(scene)), hub_constants(scene))
 
 
 def _balance(
-    scene: Scene, torque: float, transmitted: float, taken: tuple[float, float] = (0.0, 0.0)
+    scene: GearScene, torque: float, transmitted: float, taken: tuple[float, float] = (0.0, 0.0)
 ) -> float:
-    gears, drive, load = _tables(scene)
+    gears, drive, load = scene.gears, scene.drive, scene.load
     ratio = gears.gear_teeth / gears.pinion_teeth
     held = _mean_size(_over_run(scene, 0.0, drive.speed_knots()))
     driven = torque + drive.speed_gain * held - taken[0]
@@ -120,7 +119,7 @@ def _balance(
     return 2.0 * surplus / slowing if slowing > 0.0 else math.inf
 
 
-def _over_run(scene: Scene, constant: float, knots: Sequence[tuple[float, float]]) -> Floats:
+def _over_run(scene: GearScene, constant: float, knots: Sequence[tuple[float, float]]) -> Floats:
     """Return a constant plus a schedule at even times of the run; cubics are taken for straight lines."""
     if not knots:
         return np.array([constant])
@@ -134,10 +133,9 @@ def _mean_size(values: Floats) -> float:
     return float(np.abs(values).mean())
 
 
-def _mean_resistance(scene: Scene) -> float:
+def _mean_resistance(scene: GearScene) -> float:
     """Mean dry resistance over the run [N m], harmonics and laws left out."""
-    load = _tables(scene)[2]
-    return _mean_size(_over_run(scene, load.torque, load.schedule))
+    return _mean_size(_over_run(scene, scene.load.torque, scene.load.schedule))
 
 
 def resting_gap(scene: Scene) -> float:
@@ -161,12 +159,11 @@ def resting_gap(scene: Scene) -> float:
     SceneError
         If the scene has no gears.
     """
-    _tables(scene)
-    gap = rest_of(scene).gap
+    gap = rest_of(require_gears(scene)).gap
     return gap if gap >= _INNERMOST * scene.surface.roughness else math.nan
 
 
-def mean_drive_torque(scene: Scene) -> float:
+def mean_drive_torque(scene: GearScene) -> float:
     """Mean size of the drive torque over the run, harmonics left out.
 
     Parameters
@@ -186,24 +183,16 @@ def mean_drive_torque(scene: Scene) -> float:
     SceneError
         If the scene has no gears.
     """
-    gears, drive, load = _tables(scene)
+    gears, drive, load = scene.gears, scene.drive, scene.load
     mean = _mean_size(_over_run(scene, drive.torque, drive.schedule))
     if drive.speed is None and drive.law is None:
         return mean
-    assert scene.initial is not None
     speed = abs(scene.initial.gear_speed) if drive.speed is None else _balance(scene, mean, 1.0)
     resistance = _mean_resistance(scene) + speed * (load.viscous + load.drag * speed)
     taken = resistance * gears.pinion_teeth / gears.gear_teeth
     return taken if drive.law is None else max(mean, taken)
 
 
-def mean_force(scene: Scene) -> float:
+def mean_force(scene: GearScene) -> float:
     """Force of the teeth [N] under the `mean_drive_torque`."""
-    return mean_drive_torque(scene) / _tables(scene)[0].pinion_base_radius
-
-
-def _tables(scene: Scene) -> tuple[Gears, Drive, Load]:
-    """Return the tables that every gear pair has."""
-    if scene.gears is None or scene.drive is None or scene.load is None:
-        raise SceneError("gears", "(missing)", "a scene with a roller has no gears")
-    return scene.gears, scene.drive, scene.load
+    return mean_drive_torque(scene) / scene.gears.pinion_base_radius

@@ -20,7 +20,7 @@ from gearidae.errors import Interrupted, SceneError
 from gearidae.progress import sweep_progress
 from gearidae.runs.executors import check_executor, check_jobs, own_executor, side_by_side
 from gearidae.runs.kept_runs import KeptRuns
-from gearidae.runs.running import prepare
+from gearidae.runs.running import SomeScene, prepare
 
 if TYPE_CHECKING:
     from gearidae.progress import SweepProgress
@@ -130,8 +130,8 @@ class Execution:
 
 
 def prepared(
-    scene: Scene, options: RunOptions, *, samples: int | str | None = None
-) -> tuple[Scene, Execution]:
+    scene: SomeScene, options: RunOptions, *, samples: int | str | None = None
+) -> tuple[SomeScene, Execution]:
     """Check the scene and the options of a study, before anything is run; `samples` are in place of the scene's."""
     base = prepare(scene, rtol=None, samples=samples, backend=options.get("backend", "auto"))
     return base, Execution(**options, method=base.run.method)

@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 
 from gearidae import __version__
 from gearidae.errors import SceneError
-from gearidae.runs.halting import heed
+from gearidae.runs.running import heed
 from gearidae.scene.quantity import whole
 
 Made = TypeVar("Made")

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gearidae.archive.energy import imbalance_of
 from gearidae.archive.select import swept_dims
+from gearidae.archive.totals import imbalance_of
 
 if TYPE_CHECKING:
     import xarray as xr

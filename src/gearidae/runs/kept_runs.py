@@ -28,8 +28,6 @@ _LAYOUT = 8
 """Version of the entries' layout."""
 _KEY: Final = re.compile(r"[0-9a-f]{64}")
 """Keys of runs."""
-_FORMER: Final = re.compile(r"([0-9a-f]{64}\.nc|runs\.jsonl)")
-"""Files in which version 0.1.0 kept runs."""
 _STATISTICS = tuple(field.name for field in fields(Statistics) if field.name not in ("ending", "fold_gap"))
 """What is kept of the statistics; a run that is kept has finished."""
 
@@ -98,8 +96,8 @@ class KeptRuns:
         self._warned = False
 
     def count(self) -> int:
-        """Count the runs that are kept; of version 0.1.0, the files that hold them."""
-        return len(self._keys()) + len(self._former())
+        """Count the runs that are kept."""
+        return len(self._keys())
 
     def key(self, scene: Scene) -> str:
         """Hash of a scene and of all else that its result depends on."""
@@ -138,28 +136,20 @@ class KeptRuns:
 
     def note_strangers(self, scenes: Collection[Scene]) -> None:
         """Warn of kept runs that are none of these scenes."""
-        strangers = len(self._keys() - {self.key(scene) for scene in scenes}) + len(self._former())
+        strangers = len(self._keys() - {self.key(scene) for scene in scenes})
         if strangers:
-            former = " (those of gearidae 0.1.0 among them)" if self._former() else ""
             warnings.warn(
-                f"{strangers} of the runs kept in {self.folder} are of other scenes, settings or versions{former}; "
+                f"{strangers} of the runs kept in {self.folder} are of other scenes, settings or versions; "
                 "they are ignored and left there",
                 stacklevel=2,
             )
 
     def remove(self, scenes: Collection[Scene] | None = None) -> None:
         """Delete the kept runs of some scenes, or all of them, and the folder if nothing else is in it."""
-        for path in self._former() if scenes is None else ():
-            path.unlink(missing_ok=True)
         self._store.remove(self._keys() if scenes is None else {self.key(scene) for scene in scenes})
 
     def _keys(self) -> set[str]:
         return {key for key in self._store.entries() if _KEY.fullmatch(key)}
-
-    def _former(self) -> list[Path]:
-        if not self.folder.is_dir():
-            return []
-        return [path for path in self.folder.iterdir() if _FORMER.fullmatch(path.name)]
 
 
 def _header(solution: Solution, judged: dict[str, Any]) -> dict[str, Any]:

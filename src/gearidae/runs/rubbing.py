@@ -1,21 +1,23 @@
-"""What friction of the flanks and the joints takes, estimated in closed form for a scene."""
+"""What friction of the flanks and the joints takes, estimated in closed form for a scene, and where it locks them."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from gearidae.arrays import Floats
-from gearidae.mesh.friction import hub_share, loss_fraction
+from gearidae.mesh.friction import hub_share, locking_coefficients, loss_fraction
 from gearidae.mesh.pair_contact import pair_contact
 from gearidae.scene.friction import friction_values, has_flank_friction
 from gearidae.scene.joints import Joint, has_pin, joints
+from gearidae.scene.validity_row import ValidityRow
 from gearidae.torques import torque_law
 
 if TYPE_CHECKING:
-    from gearidae.scene import Scene
+    from gearidae.scene import GearScene, Scene
 
 
 _ANGLES: Final = 360
@@ -58,9 +60,8 @@ def flank_loss(scene: Scene, load: float) -> float:
     return loss_fraction(scene.geometry, coefficient) if coefficient != 0.0 else 0.0
 
 
-def hub_radii(scene: Scene) -> tuple[float, float]:
+def hub_radii(scene: GearScene) -> tuple[float, float]:
     """Radii of the hubs of pinion and gear [m]."""
-    assert scene.gears is not None
     return scene.gears.pinion_hub_radius, scene.gears.gear_hub_radius
 
 
@@ -70,13 +71,13 @@ def hub_constants(scene: Scene) -> tuple[float, float]:
     return taken.get("pinion hub", 0.0), taken.get("gear hub", 0.0)
 
 
-def joint_loads(scene: Scene, force: float) -> list[tuple[Joint, float]]:
+def joint_loads(scene: GearScene, force: float) -> list[tuple[Joint, float]]:
     """List the joints with their mean loads over a turn [N], at a constant force of the teeth [N].
 
     The force of a pin is that of the torque law at the end of the run.
     """
     pins = _pin_forces(scene)
-    line = scene.geometry.pressure_angle + (scene.drive.orientation if scene.drive is not None else 0.0)
+    line = scene.geometry.pressure_angle + scene.drive.orientation
     on_pinion = pins - force * np.array([math.sin(line), math.cos(line)])
     loads = {
         "pinion hub": float(np.hypot(*on_pinion.T).mean()),
@@ -86,12 +87,11 @@ def joint_loads(scene: Scene, force: float) -> list[tuple[Joint, float]]:
     return [(joint, loads[joint.name]) for joint in joints(scene)]
 
 
-def _pin_forces(scene: Scene) -> Floats:
+def _pin_forces(scene: GearScene) -> Floats:
     """Forces of the drive's law on the pinion at angles all around, shape (n, 2) [N]; zero for a couple."""
     angles = np.linspace(0.0, 2.0 * math.pi, _ANGLES, endpoint=False)
     if not has_pin(scene):
         return np.zeros((1, 2))
-    assert scene.drive is not None
     assert scene.drive.law is not None
     law, numbers = torque_law(scene.drive.law.name), np.array(scene.drive.law.numbers())
     function, end = getattr(law.function, "py_func", law.function), scene.run.duration
@@ -102,7 +102,7 @@ def _pin_forces(scene: Scene) -> Floats:
     return np.array(values, np.float64)[:, 1:]
 
 
-def transmitted_share(scene: Scene, load: float) -> float:
+def transmitted_share(scene: GearScene, load: float) -> float:
     """Share of the drive's work that friction leaves, at a constant force of the teeth.
 
     Returns
@@ -111,7 +111,37 @@ def transmitted_share(scene: Scene, load: float) -> float:
         What the flanks leave times what the hubs leave, 0 or more; flanks of the law ``shear`` count as without
         friction where no gap carries the force.
     """
-    assert scene.gears is not None
     loss = flank_loss(scene, load)
     left = 1.0 if math.isnan(loss) else max(1.0 - loss, 0.0)
     return left * hub_share(scene.geometry, scene.gears.hub_friction, hub_radii(scene))
+
+
+_NEAR_LOCKING: Final = 0.5
+"""Share of the coefficient that locks teeth or hubs, up to which friction changes forces by less than double."""
+
+
+def locking_rows(scene: Scene) -> Iterator[ValidityRow]:
+    """Compare coefficients of friction with those that lock the teeth or a hub; nothing where they are zero."""
+    assert scene.gears is not None
+    gears, geometry, values = scene.gears, scene.geometry, friction_values(scene)
+    where = max((values[one.name] for one in scene.materials() if one.share > 0.0), default=0.0)
+    if has_flank_friction(scene) and scene.contact.friction_law == "coulomb":
+        locks = min(locking_coefficients(geometry))
+        yield _near_locking("locking_teeth", "coefficient of friction of the flanks", where, locks, "teeth")
+    bases = {"pinion hub": geometry.base_radius_pinion, "gear hub": geometry.base_radius_gear}
+    ratios = [joint.radius / bases[joint.name] for joint in joints(scene) if joint.name in bases]
+    if gears.hub_friction > 0.0 and any(ratios):
+        quantity, coefficient = "coefficient of friction of the hubs", gears.hub_friction
+        yield _near_locking("locking_hubs", quantity, coefficient, 1.0 / max(ratios), "hubs")
+
+
+def _near_locking(name: str, quantity: str, coefficient: float, locks: float, what: str) -> ValidityRow:
+    holds = coefficient <= _NEAR_LOCKING * locks
+    verdict = (
+        f"the {what} are far from locking"
+        if holds
+        else f"near self-locking: the {what} can carry {1.0 / (1.0 - coefficient / locks):.2g} times their load"
+    )
+    limit = f"{_NEAR_LOCKING * locks:.3g}, half of that which can lock the {what}"
+    bound = _NEAR_LOCKING * locks
+    return ValidityRow(name, quantity, f"{coefficient:g}", limit, verdict, holds, coefficient, bound, "1")

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Final
 from gearidae.asperities.tip import asperity_of
 from gearidae.mesh.pair_contact import PairContact, asperity_stiffness
 from gearidae.runs.estimates import balanced_speed, mean_drive_torque, rest_of
+from gearidae.scene import GearScene
 from gearidae.scene.combinations import may_deflect
 from gearidae.scene.friction import has_flank_friction
 from gearidae.scene.joints import has_joint_friction
@@ -82,7 +83,7 @@ def run_time(scene: Scene) -> RunTime:
     """
     rest = rest_of(scene, _GAP_ERROR)
     steps, oscillations = _STEPS_AN_IMPACT, [_rate(rest.contact, rest.gap, rest.mass)]
-    if scene.initial is not None and scene.mesh is not None:
+    if isinstance(scene, GearScene):
         # a start within the flanks' reach is an oscillation too, and nothing but adhesion takes its energy away
         gap = min(scene.initial.gap, scene.mesh.backlash - scene.initial.gap)
         rate, frequency, load = _rate(rest.contact, gap, rest.mass)
@@ -122,12 +123,8 @@ def _rate(contact: PairContact, gap: float, mass: float) -> tuple[float, float, 
     )
 
 
-def _passages(scene: Scene) -> float:
+def _passages(scene: GearScene) -> float:
     """Teeth that pass, and periods of the harmonic torques."""
-    assert scene.gears is not None
-    assert scene.drive is not None
-    assert scene.load is not None
-    assert scene.initial is not None
     speed = balanced_speed(scene, mean_drive_torque(scene))
     speed = max(abs(scene.initial.gear_speed), speed if math.isfinite(speed) else 0.0)
     harmonics = (*scene.drive.harmonic, *scene.load.harmonic)

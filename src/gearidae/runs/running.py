@@ -1,18 +1,21 @@
-"""What a single run and a sweep have in common: checking the request, solving it, naming an early end."""
+"""What a single run and a sweep have in common: checking the request, solving it, naming an early end.
+
+Ctrl-C reaches the main thread alone: a run in another thread ends from inside, once an event of its thread is set.
+"""
 
 from __future__ import annotations
 
 import math
 import sys
+import threading
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
 from gearidae.errors import SceneError, SolverError
 from gearidae.records import Block, EventKind, Events, Flank, Solution, Statistics
 from gearidae.records.standing import Holding
-from gearidae.runs.halting import is_halted
 from gearidae.scene import Scene
 from gearidae.scene.prefixes import with_prefix
 
@@ -22,6 +25,9 @@ if TYPE_CHECKING:
     from gearidae import engine
     from gearidae.progress import RunReport
 
+
+SomeScene = TypeVar("SomeScene", bound=Scene)
+
 _ADVICE = "try another rtol (run.rtol); the samples and events up to there are kept"
 _LEAST_MEMORY = 1.25e9
 """Addresses [bytes] that the solver's libraries and threads take; in memory there is a fourth of it."""
@@ -29,13 +35,13 @@ _STATE = ("gear_speed", "transmission_error", "drive_gap", "height", "speed", "f
 
 
 def prepare(
-    scene: Scene,
+    scene: SomeScene,
     *,
     rtol: float | None,
     t_end: float | None = None,
     samples: int | str | None,
     backend: str = "auto",
-) -> Scene:
+) -> SomeScene:
     """Put the settings of one call into the scene, so that the scene says exactly what was run.
 
     Parameters
@@ -224,3 +230,17 @@ def _last_event(ds: xr.Dataset) -> str:
     flank: Any = Flank(int(last["event_flank"]))
     where = "" if flank is Flank.NONE else f" of pair {int(last['event_pair'])} ({flank.name.lower()} flank)"
     return f"{kind}{where} at {float(last['event_time']):.9g} s"
+
+
+_of_this_thread = threading.local()
+
+
+def heed(halted: threading.Event) -> None:
+    """Let the runs of this thread end as soon as an event is set."""
+    _of_this_thread.halted = halted
+
+
+def is_halted() -> bool:
+    """Whether the runs of this thread are to end."""
+    halted = getattr(_of_this_thread, "halted", None)
+    return halted is not None and halted.is_set()

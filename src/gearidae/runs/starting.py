@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import os
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 from gearidae import engine
 from gearidae.errors import SceneError
@@ -37,7 +38,6 @@ def started_from(start: xr.Dataset | str | os.PathLike[str] | None, scene: Scene
     if start is None:
         return engine.Start()
     from gearidae.archive import open_archive
-    from gearidae.archive.end_state import end_state_of
 
     if isinstance(start, str | os.PathLike):
         ds = open_archive(start)
@@ -47,18 +47,64 @@ def started_from(start: xr.Dataset | str | os.PathLike[str] | None, scene: Scene
         raise SceneError("start", type(start).__name__, "must be a dataset of a run, or its archive")
     if "scene" not in ds.attrs:
         raise SceneError("start", "(a dataset)", "is no run of gearidae: it has no scene")
-    words, began = end_state_of(ds)
+    begin = _end_of(ds.attrs)
+    assert begin.scene is not None
+    engine.refuse_other_bodies(begin.scene, scene)
+    return begin
+
+
+def _end_of(attributes: Mapping[Any, Any]) -> engine.Start:
+    """Start of a run that goes on from the one with these attributes."""
+    from gearidae.archive.end_state import end_state_of
+
+    words, began = end_state_of(attributes)
     try:
-        theirs = Scene.from_dict(json.loads(ds.attrs["scene"]))
+        theirs = Scene.from_dict(json.loads(attributes["scene"]))
     except (TypeError, ValueError) as error:
         raise SceneError("start", "scene", f"is not readable ({error})") from None
-    found = engine.end_of(theirs, words, began)
-    engine.refuse_other_bodies(theirs, scene)
-    return found
+    return engine.end_of(theirs, words, began)
 
 
 def started_attributes(start: engine.Start) -> dict[str, str]:
-    """Attributes of a run's dataset that name the state it went on from; none of a run by itself."""
-    from gearidae.archive.end_state import fingerprint
+    """Attributes of a run's dataset: a name of the state it went on from, and that state with its scene.
 
-    return {} if start.words is None else {"started_from": fingerprint(start.words)}
+    None of a run by itself.
+    """
+    if start.words is None or start.scene is None:
+        return {}
+    from gearidae.archive.end_state import end_state_attributes, fingerprint
+
+    parent = {
+        "scene": json.dumps(start.scene.to_dict(), allow_nan=False),
+        **end_state_attributes(start.began, start.words),
+    }
+    return {"started_from": fingerprint(start.words), "parent": json.dumps(parent)}
+
+
+def start_again(attributes: Mapping[Any, Any]) -> engine.Start:
+    """Where the run of a dataset has begun, to run it again.
+
+    Parameters
+    ----------
+    attributes : mapping
+        Of the dataset of a run, or a link of a chain.
+
+    Raises
+    ------
+    SceneError
+        If it went on from a run that the dataset does not hold.
+    """
+    if "parent" not in attributes:
+        if "started_from" in attributes:
+            allowed = (
+                "holds neither scene nor end of the run that it goes on from: archives of version 0.2 do not"
+            )
+            raise SceneError("dataset", "a continued run", allowed)
+        return engine.Start()
+    try:
+        parent = json.loads(attributes["parent"])
+        if not isinstance(parent, dict):
+            raise TypeError
+    except (TypeError, ValueError):
+        raise SceneError("dataset", "parent", "is damaged: the run that this one went on from") from None
+    return _end_of(parent)

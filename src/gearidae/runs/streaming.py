@@ -12,7 +12,7 @@ from gearidae import __version__, engine
 from gearidae.archive import GrowingArchive, open_archive, to_dataset
 from gearidae.archive.checkpoint import Checkpoint, drop_checkpoints
 from gearidae.archive.disk import DiskError
-from gearidae.archive.growing import RESUMABLE
+from gearidae.archive.unfinished import RESUMABLE
 from gearidae.engine.backend import statistics_of
 from gearidae.errors import Interrupted, SceneError, SolverError
 from gearidae.progress import RunProgress, run_progress

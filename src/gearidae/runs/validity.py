@@ -31,7 +31,7 @@ from gearidae.contact.surroundings import (
 )
 from gearidae.mesh.pair_contact import PairContact
 from gearidae.runs.estimates import Rest, balanced_speed, mean_drive_torque, rest_of
-from gearidae.runs.locking import locking_rows
+from gearidae.runs.rubbing import locking_rows
 from gearidae.runs.yielding import yielding_row
 from gearidae.scene.gears import disc_inertia
 from gearidae.scene.prefixes import with_prefix
@@ -40,7 +40,7 @@ from gearidae.scene.validity_row import EXPECTED_ASPERITIES, ValidityRow, rows_t
 if TYPE_CHECKING:
     import pandas as pd
 
-    from gearidae.scene import Scene
+    from gearidae.scene import GearScene, Scene
 
 _DENSEST: Final = 0.06
 """Random surfaces have a product N beta sigma of 0.03 to 0.06."""
@@ -118,7 +118,7 @@ def validity_rows(scene: Scene, force: float = math.nan) -> list[ValidityRow]:
 
 # Some 15 ms: an archive needs them at its beginning and at its end.
 @lru_cache(maxsize=16)
-def _rows(scene: Scene) -> tuple[ValidityRow, ...]:
+def _rows(scene: GearScene) -> tuple[ValidityRow, ...]:
     rest = rest_of(scene)
     stiffness = math.nan if math.isnan(rest.gap) else rest.contact.stiffness(rest.gap)
     real = scene.contact.is_discrete
@@ -126,7 +126,6 @@ def _rows(scene: Scene) -> tuple[ValidityRow, ...]:
     rows += [_temperature(rest, stiffness), _gas(rest, stiffness), _adhesion(scene, rest)]
     rows += [_attraction(scene, rest, rest.gap, "attraction", "attraction across the gap")]
     if scene.gears is not None:
-        assert scene.mesh is not None
         behind = scene.mesh.backlash - rest.gap
         rows += [
             _attraction(scene, rest, behind, "attraction_behind", "attraction across the backlash behind")
@@ -353,9 +352,7 @@ def _attraction(scene: Scene, rest: Rest, gap: float, name: str, quantity: str) 
     return _row(name, quantity, pull, "N", limit, bound, holds, verdict)
 
 
-def _disc_drag(scene: Scene) -> ValidityRow:
-    assert scene.load is not None
-    assert scene.initial is not None
+def _disc_drag(scene: GearScene) -> ValidityRow:
     speed = balanced_speed(scene, mean_drive_torque(scene))
     if not math.isfinite(speed) or speed == 0.0:
         speed = abs(scene.initial.gear_speed)
@@ -375,8 +372,7 @@ def _disc_drag(scene: Scene) -> ValidityRow:
     return _row("disc_drag", "drag of air under the gear", torque, "N m", limit, resistance, holds, verdict)
 
 
-def _inertia(scene: Scene) -> Iterator[ValidityRow]:
-    assert scene.gears is not None
+def _inertia(scene: GearScene) -> Iterator[ValidityRow]:
     gears, geometry = scene.gears, scene.geometry
     for name, inertia, radius in (
         ("pinion", gears.pinion_inertia, geometry.base_radius_pinion),

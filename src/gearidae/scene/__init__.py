@@ -8,7 +8,7 @@ from gearidae.scene.keys import KeyInfo
 from gearidae.scene.knots import Knots
 from gearidae.scene.presets import PRESETS, preset
 from gearidae.scene.run import Initial, Roller, Run
-from gearidae.scene.scene import Scene, describe_key, describe_keys
+from gearidae.scene.scene import GearScene, RollerScene, Scene, describe_key, describe_keys, require_gears
 from gearidae.scene.shown import differences, nearest_preset
 from gearidae.scene.surface import Contact, Surface
 from gearidae.scene.torque import Drive, Harmonic, Load
@@ -19,6 +19,7 @@ __all__ = [
     "Coating",
     "Contact",
     "Drive",
+    "GearScene",
     "Gears",
     "Harmonic",
     "Initial",
@@ -28,6 +29,7 @@ __all__ = [
     "Material",
     "Mesh",
     "Roller",
+    "RollerScene",
     "Run",
     "Scene",
     "StaticErrorHarmonic",
@@ -40,4 +42,5 @@ __all__ = [
     "load_case",
     "nearest_preset",
     "preset",
+    "require_gears",
 ]

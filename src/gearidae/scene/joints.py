@@ -11,7 +11,7 @@ from gearidae.torques import torque_law
 
 if TYPE_CHECKING:
     from gearidae.scene.gears import Gears
-    from gearidae.scene.scene import Scene
+    from gearidae.scene.scene import GearScene, Scene
     from gearidae.scene.torque import Drive
 
 
@@ -108,7 +108,7 @@ def has_joint_friction(scene: Scene) -> bool:
     return any(joint.holding for joint in joints(scene))
 
 
-def check_joints(scene: Scene) -> None:
+def check_joints(scene: GearScene) -> None:
     """Refuse joints without what they need, and those that lock.
 
     Raises
@@ -118,7 +118,6 @@ def check_joints(scene: Scene) -> None:
     """
     _check_pin(scene)
     gears, there = scene.gears, {joint.name: joint for joint in joints(scene)}
-    assert gears is not None
     for shaft in ("pinion", "gear"):
         for load, radius in (("hub_adhesion", "hub_radius"), ("axial_load", "dimple_radius")):
             if getattr(gears, f"{shaft}_{load}") > 0.0 and getattr(gears, f"{shaft}_{radius}") == 0.0:
@@ -135,11 +134,9 @@ def check_joints(scene: Scene) -> None:
     _check_circle(scene, there)
 
 
-def _check_pin(scene: Scene) -> None:
+def _check_pin(scene: GearScene) -> None:
     """Refuse keys of a pin without a law that has a force, and a load with one."""
     drive, load = scene.drive, scene.load
-    assert drive is not None
-    assert load is not None
     if load.law is not None and torque_law(load.law.name).has_force:
         raise SceneError(
             "load.law.name", load.law.name, "has a force, which only a drive has: choose another law"

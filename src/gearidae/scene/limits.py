@@ -13,7 +13,7 @@ from gearidae.errors import SceneError
 from gearidae.scene.coating import THICKEST
 
 if TYPE_CHECKING:
-    from gearidae.scene.scene import Scene
+    from gearidae.scene.scene import GearScene, Scene
 
 MOST_PAIRS: Final = 32
 """Tooth pairs of one flank whose history the engine keeps at a time."""
@@ -52,7 +52,7 @@ def check_thickness(scene: Scene) -> None:
         )
 
 
-def pairs_within_reach(scene: Scene, cutoff: float) -> float:
+def pairs_within_reach(scene: GearScene, cutoff: float) -> float:
     """Tooth pairs of one flank that can be in touch at a time, by their tip relief.
 
     A pair at a distance of d base pitches from the path of contact has its gap opened by ``d^2 pb^2 / (2 rho)``. Where
@@ -71,13 +71,12 @@ def pairs_within_reach(scene: Scene, cutoff: float) -> float:
     float
         Contact ratio, and twice that distance.
     """
-    assert scene.mesh is not None
     geometry = scene.geometry
     relief = geometry.base_pitch**2 / (scene.mesh.tip_relief_radius * scene.surface.roughness)
     return geometry.contact_ratio + 2.0 * math.sqrt(2.0 * max(cutoff - GAP_LOW, 0.0) / relief)
 
 
-def check_reach(scene: Scene, cutoff: float = 0.0) -> None:
+def check_reach(scene: GearScene, cutoff: float = 0.0) -> None:
     """Refuse a tip relief so slight that more pairs are in touch than can be kept.
 
     Parameters
@@ -93,7 +92,6 @@ def check_reach(scene: Scene, cutoff: float = 0.0) -> None:
     SceneError
         Naming ``mesh.tip_relief_radius``.
     """
-    assert scene.mesh is not None
     pairs = pairs_within_reach(scene, cutoff)
     if pairs <= MOST_PAIRS:
         return
@@ -107,7 +105,7 @@ def check_reach(scene: Scene, cutoff: float = 0.0) -> None:
     )
 
 
-def check_gaps(scene: Scene) -> None:
+def check_gaps(scene: GearScene) -> None:
     """Refuse gaps that a double cannot hold beside the backlash, and discrete asperities that fill the backlash.
 
     Raises
@@ -116,8 +114,6 @@ def check_gaps(scene: Scene) -> None:
         Naming ``mesh.backlash``, ``initial.gap`` or ``surface.roughness``.
     """
     mesh, initial, sigma = scene.mesh, scene.initial, scene.surface.roughness
-    assert mesh is not None
-    assert initial is not None
     deepest = mesh.backlash + scene.surface.asperity_radius
     if scene.contact.is_discrete and sigma > deepest:
         raise SceneError(

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, Self
+from typing import TYPE_CHECKING, Annotated, Any, Self
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import Geometry, GeometryError, mesh_geometry
@@ -52,7 +52,7 @@ def _named(value: object) -> str:
 
 
 class Scene(Group):
-    """A gear pair, or a roller, ready to be run. All quantities are SI floats.
+    """A gear pair, or a roller, ready to be run: a `GearScene` or a `RollerScene`. All quantities are SI floats.
 
     Give ``gears``, ``mesh``, ``drive`` and ``initial`` (``load`` if there is one), or ``roller`` in their
     place; ``surface`` and ``run`` always. Numbers are SI; texts carry their unit ("34.715 um").
@@ -82,6 +82,8 @@ class Scene(Group):
     0.5
     """
 
+    model_config = ConfigDict(title="Scene")
+
     name: Annotated[str, BeforeValidator(_named)] = Field(
         default="scene", description="what the scene is called"
     )
@@ -96,6 +98,12 @@ class Scene(Group):
     contact: Contact = Field(default=Contact(), description="laws of contact")
     run: Run = Field(description="how long and how accurate")
 
+    def __new__(cls, **data: Any) -> Self:
+        """Make a scene of the kind that its tables say."""
+        if cls is not Scene:
+            return super().__new__(cls)
+        return super().__new__(GearScene if data.get("roller") is None else RollerScene)  # type: ignore[return-value]
+
     @model_validator(mode="before")
     @classmethod
     def _no_load(cls, data: Any) -> Any:
@@ -108,31 +116,16 @@ class Scene(Group):
     def _whole(self) -> Self:
         """Check what no table can check alone."""
         self._set_gap()
-        given = [table for table in _GEAR_TABLES if getattr(self, table) is not None]
         check_stretch(self)
         check_thickness(self)
         check_tables(self)
         check_asperities(self)
         check_combinations(self)
-        if self.roller is not None:
-            if given:
-                raise SceneError(
-                    given[0],
-                    "(given)",
-                    f"a scene has a roller or gears, not both; a roller takes no {given[0]}",
-                )
-            if self.run.stop != "time":
-                raise SceneError("run.stop", self.run.stop, "must be time in a scene with a roller")
-            if self.run.exposures != 0:
-                raise SceneError("run.exposures", self.run.exposures, "must be 0 in a scene with a roller")
-            check_population(self)
-            check_no_friction(self)
-            return self
-        for table in ("gears", "mesh", "drive", "initial"):
-            if table not in given:
-                raise SceneError(table, "(missing)", "is required in a scene without a roller")
-        self._check_mesh()
+        self._check_bodies()
         return self
+
+    def _check_bodies(self) -> None:
+        """Check the tables of the bodies that meet."""
 
     def _set_gap(self) -> None:
         """Let a gap that is given in roughnesses follow this scene's roughness."""
@@ -142,45 +135,6 @@ class Scene(Group):
         length = InRoughnesses(gap.number, self.surface.roughness)
         if length != gap:  # a table of its own then: scenes share those that do not change
             object.__setattr__(self, "initial", self.initial.model_copy(update={"gap": length}))
-
-    def _check_mesh(self) -> None:
-        """Refuse gears that cannot mesh, and starts from within the teeth."""
-        gears, mesh, initial = self.gears, self.mesh, self.initial
-        assert gears is not None
-        assert mesh is not None
-        assert initial is not None
-        geometry = self.geometry
-        if mesh.backlash >= geometry.base_pitch / 2:
-            raise SceneError(
-                "mesh.backlash",
-                mesh.backlash,
-                f"must be below half a base pitch, {geometry.base_pitch / 2:.4g} m",
-            )
-        slope = sum(abs(one.order * one.amplitude) for one in mesh.static_error)
-        if slope >= gears.pinion_base_radius:
-            raise SceneError(
-                "mesh.static_error",
-                f"(slope {slope:.4g} m/rad)",
-                f"orders times amplitudes must add up to less than R1, {gears.pinion_base_radius:g} m",
-            )
-        overlap = _DEEPEST_OVERLAP * self.surface.roughness
-        if not -overlap <= initial.gap <= mesh.backlash + overlap:
-            raise SceneError(
-                "initial.gap",
-                initial.gap,
-                f"must lie in {-overlap:.4g}..{mesh.backlash + overlap:.4g} m, or flanks would overlap",
-            )
-        if gears.pinion_teeth * self.run.exposures > _MOST_PLACES:
-            raise SceneError(
-                "run.exposures",
-                self.run.exposures,
-                f"must be {_MOST_PLACES // gears.pinion_teeth} at most for {gears.pinion_teeth} teeth of the pinion",
-            )
-        check_gaps(self)
-        check_reach(self)
-        check_population(self)
-        check_friction(self)
-        check_joints(self)
 
     @property
     def geometry(self) -> Geometry:
@@ -259,8 +213,8 @@ class Scene(Group):
         }
         data |= self._plain(touched)
         for key, value in changes.items():
-            put(type(self), data, key, value)
-        return type(self).from_dict(data)
+            put(Scene, data, key, value)
+        return Scene.from_dict(data)  # type: ignore[return-value]  # another kind only where its tables change
 
     def to_dict(self) -> dict[str, Any]:
         """Return the scene as plain tables, lists, texts and SI numbers, ready for JSON.
@@ -333,6 +287,87 @@ class Scene(Group):
         if homes and not did_you_mean(key, known):
             return f"unknown key; did you mean {' or '.join(homes)}?"
         return super()._unknown(key, known)
+
+
+class GearScene(Scene):
+    """A scene with gears: it has all of their tables."""
+
+    if TYPE_CHECKING:
+        gears: Gears
+        mesh: Mesh
+        drive: Drive
+        load: Load
+        initial: Initial
+
+    def _check_bodies(self) -> None:
+        """Refuse gears that lack a table or cannot mesh, and starts from within the teeth."""
+        for table in ("gears", "mesh", "drive", "initial"):
+            if getattr(self, table) is None:
+                raise SceneError(table, "(missing)", "is required in a scene without a roller")
+        gears, mesh, geometry = self.gears, self.mesh, self.geometry
+        if mesh.backlash >= geometry.base_pitch / 2:
+            allowed = f"must be below half a base pitch, {geometry.base_pitch / 2:.4g} m"
+            raise SceneError("mesh.backlash", mesh.backlash, allowed)
+        slope = sum(abs(one.order * one.amplitude) for one in mesh.static_error)
+        if slope >= gears.pinion_base_radius:
+            raise SceneError(
+                "mesh.static_error",
+                f"(slope {slope:.4g} m/rad)",
+                f"orders times amplitudes must add up to less than R1, {gears.pinion_base_radius:g} m",
+            )
+        overlap = _DEEPEST_OVERLAP * self.surface.roughness
+        if not -overlap <= self.initial.gap <= mesh.backlash + overlap:
+            raise SceneError(
+                "initial.gap",
+                self.initial.gap,
+                f"must lie in {-overlap:.4g}..{mesh.backlash + overlap:.4g} m, or flanks would overlap",
+            )
+        if gears.pinion_teeth * self.run.exposures > _MOST_PLACES:
+            raise SceneError(
+                "run.exposures",
+                self.run.exposures,
+                f"must be {_MOST_PLACES // gears.pinion_teeth} at most for {gears.pinion_teeth} teeth of the pinion",
+            )
+        check_gaps(self)
+        check_reach(self)
+        check_population(self)
+        check_friction(self)
+        check_joints(self)
+
+
+class RollerScene(Scene):
+    """A scene with a roller."""
+
+    if TYPE_CHECKING:
+        roller: Roller
+
+    def _check_bodies(self) -> None:
+        """Refuse a scene without a roller, and what only gears have."""
+        if self.roller is None:
+            raise SceneError("roller", "(missing)", "is required in a scene without gears")
+        for table in _GEAR_TABLES:
+            if getattr(self, table) is not None:
+                allowed = f"a scene has a roller or gears, not both; a roller takes no {table}"
+                raise SceneError(table, "(given)", allowed)
+        if self.run.stop != "time":
+            raise SceneError("run.stop", self.run.stop, "must be time in a scene with a roller")
+        if self.run.exposures != 0:
+            raise SceneError("run.exposures", self.run.exposures, "must be 0 in a scene with a roller")
+        check_population(self)
+        check_no_friction(self)
+
+
+def require_gears(scene: Scene) -> GearScene:
+    """Refuse anything but a scene with gears, which is returned.
+
+    Raises
+    ------
+    SceneError
+        If it is something else.
+    """
+    if not isinstance(scene, GearScene):
+        raise SceneError("scene", getattr(scene, "name", type(scene).__name__), "must be a scene with gears")
+    return scene
 
 
 def describe_keys() -> tuple[KeyInfo, ...]:

@@ -15,6 +15,7 @@ from gearidae.arrays import Floats
 from gearidae.errors import SceneError, SolverError
 from gearidae.runs.execution import RunOptions, prepared
 from gearidae.runs.kept_runs import KeptRuns
+from gearidae.scene import require_gears
 from gearidae.scene.joints import joints
 from gearidae.scene.quantity import Quantity, whole
 from gearidae.studies.declared.hub_life import FITTED, QUANTILES, STUDY
@@ -29,10 +30,9 @@ from gearidae.studies.hub_wear import (
     read_threshold,
     turns_to,
 )
-from gearidae.studies.requirements import require_gears
 
 if TYPE_CHECKING:
-    from gearidae.scene import Scene
+    from gearidae.scene import GearScene, Scene
 
 log = logging.getLogger(__name__)
 
@@ -144,7 +144,7 @@ def hub_life(
     has worn by h lets its shaft cross 2 h where the tooth force reverses, so that the play along the line of action
     grows by 2 h at most; a worn pin adds none.
     """
-    require_gears(scene)
+    scene = require_gears(scene)
     base, how = prepared(scene, options, samples="off")
     wear = _wear(base, coefficient, threshold, (spread, seeds), length)
     measured = Turns(whole("turns", turns, 1, 10_000), _TOLERANCE.take("tolerance", tolerance))
@@ -174,7 +174,7 @@ def hub_life(
     return STUDY.compute(how, runs[0], work, settings, origin=scene)
 
 
-def at_frequency(scene: Scene, frequency: float) -> Scene:
+def at_frequency(scene: GearScene, frequency: float) -> GearScene:
     """Return the scene with another last frequency of its drive's law [Hz], schedule and initial speed in proportion.
 
     Raises
@@ -182,7 +182,6 @@ def at_frequency(scene: Scene, frequency: float) -> Scene:
     SceneError
         If its drive has no law with a frequency, or one that ends at 0.
     """
-    assert scene.initial is not None
     law = scene.to_dict()["drive"].get("law") or {}
     old = law.get("frequency")
     last = old[-1][1] if isinstance(old, list) else old
@@ -195,14 +194,13 @@ def at_frequency(scene: Scene, frequency: float) -> Scene:
 
 
 def _wear(
-    scene: Scene,
+    scene: GearScene,
     coefficient: float | str,
     threshold: float | str,
     scatter: tuple[float | str, int],
     length: float | str | None,
 ) -> _Wear:
     """Read the numbers of the wear."""
-    assert scene.gears is not None
     there = [joint for joint in joints(scene) if joint.radius > 0.0]
     if not there:
         allowed = "must have a hub or a pin with a radius (gears.pinion_hub_radius, drive.pin_radius)"
@@ -218,7 +216,7 @@ def _wear(
 
 
 def _dataset(
-    scene: Scene, wear: _Wear, requested: list[float] | None, words: list[str], *, clearance: bool
+    scene: GearScene, wear: _Wear, requested: list[float] | None, words: list[str], *, clearance: bool
 ) -> xr.Dataset:
     failures = [failure_of(word) for word in words]
     for failure in filter(None, failures):

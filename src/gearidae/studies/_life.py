@@ -20,6 +20,7 @@ from gearidae.errors import SceneError
 from gearidae.progress import sweep_progress
 from gearidae.runs.execution import RunOptions, prepared
 from gearidae.runs.kept_runs import KeptRuns
+from gearidae.scene import require_gears
 from gearidae.scene.quantity import whole
 from gearidae.studies.cycle_jump import Life, jump
 from gearidae.studies.declared.life import STUDY
@@ -27,11 +28,11 @@ from gearidae.studies.life_coverage import coverage_of
 from gearidae.studies.life_dataset import life_dataset
 from gearidae.studies.life_rates import MOST_STATES, DirectCycles, StateResult, Windows
 from gearidae.studies.life_window import Cycles, window_scene
-from gearidae.studies.requirements import require_constant, require_gears
+from gearidae.studies.requirements import require_constant
 from gearidae.wear import LossLaw
 
 if TYPE_CHECKING:
-    from gearidae.scene import Scene
+    from gearidae.scene import GearScene, Scene
 
 _PLACES: Final = 8
 
@@ -120,6 +121,7 @@ def life(
     >>> found = gd.studies.life(scene, law)  # doctest: +SKIP
     >>> found.attrs["passages_to_sticking"]  # doctest: +SKIP
     """
+    scene = require_gears(scene)
     base, how = prepared(scene, options, samples="off")
     count = _check(
         base, law, passages, fraction, (places, cycles, settle, starts), (tolerance, bracket), resolved
@@ -161,13 +163,13 @@ def life(
     )
 
 
-def _dataset(scene: Scene, direct: DirectCycles, found: Life, *, frequency: bool) -> xr.Dataset:
+def _dataset(scene: GearScene, direct: DirectCycles, found: Life, *, frequency: bool) -> xr.Dataset:
     """Make the dataset of a life, with the state at which it sticks as its last if there is one."""
     windows = direct.windows
     seen = [_seen(direct, state) for state in found.states]
     ds = life_dataset(scene, windows.coverage, found, seen, frequency=frequency)
     simulated = windows.mesh_cycles + direct.run
-    teeth = scene.gears.pinion_teeth if scene.gears is not None else 1
+    teeth = scene.gears.pinion_teeth
     whole = found.passages[-1] * teeth
     ends = {} if math.isnan(found.sticks_by) else {"passages_to_sticking": found.sticks_by}
     return ds.assign_attrs(
@@ -195,7 +197,7 @@ def _seen(direct: DirectCycles, state: Floats) -> StateResult:
     return direct.windows.of(state)
 
 
-def _so_far(scene: Scene, direct: DirectCycles, found: Life) -> xr.Dataset:
+def _so_far(scene: GearScene, direct: DirectCycles, found: Life) -> xr.Dataset:
     """Make the dataset of a life that was cut off: of its steps that have been run, without frequencies."""
     done = [
         number
@@ -211,7 +213,7 @@ def _so_far(scene: Scene, direct: DirectCycles, found: Life) -> xr.Dataset:
 
 
 def _check(
-    scene: Scene,
+    scene: GearScene,
     law: LossLaw,
     passages: float,
     fraction: float,
@@ -220,7 +222,6 @@ def _check(
     resolved: str,
 ) -> int:
     """Refuse what is not allowed; return the mesh cycles of a window that count."""
-    require_gears(scene)
     require_constant(scene, "a life", "its windows stand for all passages")
     if not isinstance(law, LossLaw):
         raise SceneError("law", type(law).__name__, "must be a loss law, see gearidae.wear.loss_law")
@@ -237,6 +238,5 @@ def _check(
         if not 1e-8 <= size <= 0.1:
             raise SceneError(name, size, "must lie in 1e-08..0.1")
     cycles = numbers[1]
-    assert scene.gears is not None
     teeth = scene.gears.pinion_teeth
     return math.ceil(cycles / teeth) * teeth if resolved == "tooth" else cycles

@@ -37,7 +37,7 @@ from gearidae.studies.starting_ramp import (
 )
 
 if TYPE_CHECKING:
-    from gearidae.scene import Scene
+    from gearidae.scene import GearScene
 
 log = logging.getLogger(__name__)
 
@@ -79,8 +79,8 @@ class _Design:
         Of the runs of `torques` that have failed; empty texts of the others.
     """
 
-    scene: Scene
-    laid: list[Scene]
+    scene: GearScene
+    laid: list[GearScene]
     scale: float = math.nan
     halvings: int = 0
     torques: Floats = field(default_factory=lambda: np.empty(0))
@@ -112,7 +112,7 @@ class _Runs:
     compute: SideBySide
     messages: list[str] = field(default_factory=list)
 
-    def torques(self, scenes: Sequence[Scene]) -> Floats:
+    def torques(self, scenes: Sequence[GearScene]) -> Floats:
         """Torques of runs from rest [N m]; infinite where the gear has not turned, NaN where its run has failed."""
         found = []
         self.messages = []
@@ -126,7 +126,11 @@ class _Runs:
 
 
 def starting_torques(
-    base: Scene, fractions: Sequence[float], scenes: Sequence[Scene], seeds: int | None, how: Execution
+    base: GearScene,
+    fractions: Sequence[float],
+    scenes: Sequence[GearScene],
+    seeds: int | None,
+    how: Execution,
 ) -> xr.Dataset:
     """Distribution of the starting torques over seeds, for `starting_torque`.
 
@@ -178,7 +182,6 @@ def _find_all(designs: Sequence[_Design], runs: _Runs) -> None:
             one.learn(torques, runs.messages[own])
         waiting = [one for one in waiting if not one.is_settled]
     for one in designs:
-        assert one.scene.drive is not None
         torque, dry = one.scene.drive.torque, pitch_of(one.scene).dry
         one.starts = np.full(len(one.laid), 0.0 if torque > 0.0 else math.nan)
         if torque > dry:
@@ -205,9 +208,8 @@ def _mean(values: Floats) -> float:
 
 
 def _dataset(
-    base: Scene, shares: Sequence[float], numbers: Sequence[int], designs: Sequence[_Design]
+    base: GearScene, shares: Sequence[float], numbers: Sequence[int], designs: Sequence[_Design]
 ) -> xr.Dataset:
-    assert base.drive is not None
     places = [place_of_seed(base, number) for number in numbers]
     axes = {"place": np.array(places), "seed": np.array(numbers), "quantile": np.array(QUANTILES)}
     axes["part"] = np.array(PARTS)

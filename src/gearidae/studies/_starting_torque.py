@@ -19,6 +19,7 @@ from gearidae.errors import SceneError
 from gearidae.runs.execution import Execution, RunOptions, prepared
 from gearidae.runs.kept_runs import KeptRuns
 from gearidae.runs.running import solve_to_end, unfinished, unsolved
+from gearidae.scene import require_gears
 from gearidae.scene.carried import numbers_of
 from gearidae.scene.quantity import whole
 from gearidae.studies._starting_seeds import starting_torques
@@ -26,13 +27,13 @@ from gearidae.studies.bracket import STRIDE, bracket, next_value
 from gearidae.studies.declared.starting_torque import STUDY
 from gearidae.studies.failures import FAILS, failure_of
 from gearidae.studies.release import holding_forces
-from gearidae.studies.requirements import require_constant, require_gears
+from gearidae.studies.requirements import require_constant
 from gearidae.studies.starting_parts import PARTS, Starting, parts_of
 from gearidae.studies.starting_ramp import nothing_followed, pitch_of
 
 if TYPE_CHECKING:
     from gearidae.records import Solution
-    from gearidae.scene import Scene
+    from gearidae.scene import GearScene, Scene
 
 log = logging.getLogger(__name__)
 
@@ -71,7 +72,7 @@ def static_starting_torque(scene: Scene, *, impacts: int = 3, lowest: float | No
     SceneError
         If the scene has no gears, or a setting is not allowed.
     """
-    _require(scene, impacts)
+    scene = _require(scene, impacts)
     lowest, whole, geometry = _lowest(scene, lowest), Starting(scene), scene.geometry
     dry, lever = whole.torque(), geometry.base_radius_gear * whole.ratio
     carried = dry - whole.joint_torques[0]  # by the teeth
@@ -160,7 +161,7 @@ def starting_torque(
     The two differ: a gear that comes along has momentum, which helps it over the first exits, and its contact has been
     pressed by the first touch harder than by the torque, which makes the next ones harder.
     """
-    _require(scene, impacts)
+    scene = _require(scene, impacts)
     if not 0.001 <= tolerance <= 1.0:
         raise SceneError("tolerance", tolerance, "must lie in 0.001..1")
     base, how = prepared(scene, options)
@@ -200,7 +201,7 @@ def _refuse_settings(**given: Any) -> None:
             )
 
 
-def _coatings(base: Scene, given: ArrayLike | None) -> tuple[list[float], list[Scene]]:
+def _coatings(base: GearScene, given: ArrayLike | None) -> tuple[list[float], list[GearScene]]:
     """Fractions of the coating, and the scenes with them."""
     if isinstance(given, str):
         if given != "own":
@@ -211,9 +212,8 @@ def _coatings(base: Scene, given: ArrayLike | None) -> tuple[list[float], list[S
 
 
 def _dataset(
-    scene: Scene, fractions: Sequence[float], searches: Sequence[_Search], *, simulated: bool
+    scene: GearScene, fractions: Sequence[float], searches: Sequence[_Search], *, simulated: bool
 ) -> xr.Dataset:
-    assert scene.drive is not None
     found = [each.result if simulated else (math.nan, math.nan) for each in searches]
     turns, sticks = map(np.array, zip(*found, strict=True))
     values = {
@@ -238,7 +238,7 @@ def _dataset(
 class _Search:
     """Bracket of one fraction's torque on its way to be narrow; torques are beyond the dry resistance."""
 
-    scene: Scene
+    scene: GearScene
     impacts: int
     lowest: float
     static: float
@@ -291,15 +291,13 @@ def _search_all(searches: Sequence[_Search], tolerance: float, how: Execution, k
 
 def _way(search: _Search) -> float:
     """Angle through which the gear is to come [rad]."""
-    assert search.scene.gears is not None
     return search.impacts * 2.0 * math.pi / search.scene.gears.gear_teeth
 
 
-def _from_rest(search: _Search, torque: float) -> Scene:
+def _from_rest(search: _Search, torque: float) -> GearScene:
     """Return the scene of a run from rest at a torque beyond the dry resistance, with the time that it gets."""
     scene, way, pitch = search.scene, _way(search), pitch_of(search.scene)
     load = scene.load
-    assert load is not None
     duration = math.sqrt(2.0 * way * pitch.inertia / (torque * pitch.ratio))
     if load.drag > 0.0:
         duration += way / math.sqrt(torque * pitch.ratio / load.drag)
@@ -316,11 +314,10 @@ def _from_rest(search: _Search, torque: float) -> Scene:
     )
 
 
-def _run_from_rest(scene: Scene, way: float, backend: str) -> tuple[Solution, str]:
+def _run_from_rest(scene: GearScene, way: float, backend: str) -> tuple[Solution, str]:
     """Run a scene; ``turns`` if the gear comes that far, else ``sticks``; `FAILS` and a message if it fails."""
     solution = solve_to_end(scene, backend)
     if solution.status != "finished":
-        assert scene.drive is not None
         coverage = 100.0 * float(np.mean(scene.coating.fractions))
         words = f"the run of SAM {coverage:.4g} % at {scene.drive.torque:g} N m"
         return solution, f"{FAILS}{unfinished(solution, words)}"
@@ -329,13 +326,12 @@ def _run_from_rest(scene: Scene, way: float, backend: str) -> tuple[Solution, st
     return replace(solution, time=none.time, samples=none.samples, events=none.events), word
 
 
-def _dry(scene: Scene) -> float:
+def _dry(scene: GearScene) -> float:
     """Drive torque that dry resistance and joints take [N m], without friction of the flanks."""
     return pitch_of(scene).dry
 
 
-def _lowest(scene: Scene, given: float | None) -> float:
-    assert scene.drive is not None
+def _lowest(scene: GearScene, given: float | None) -> float:
     lowest = _LOWEST * abs(scene.drive.torque) if given is None else given
     if not 0.0 < lowest < math.inf:
         allowed = (
@@ -346,7 +342,9 @@ def _lowest(scene: Scene, given: float | None) -> float:
     return lowest
 
 
-def _require(scene: Scene, impacts: int) -> None:
-    require_gears(scene)
-    require_constant(scene, "a starting torque", "it holds against one load", ("load",))
+def _require(scene: Scene, impacts: int) -> GearScene:
+    require_constant(
+        gears := require_gears(scene), "a starting torque", "it holds against one load", ("load",)
+    )
     whole("impacts", impacts, 1)
+    return gears

@@ -28,9 +28,10 @@ from gearidae.contact.kernels.law import GAP_HIGH, force_scale, law_table, law_v
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import curvature_radii
 from gearidae.runs.estimates import mean_drive_torque, resting_gap
+from gearidae.scene import require_gears
 
 if TYPE_CHECKING:
-    from gearidae.scene import Scene
+    from gearidae.scene import GearScene, Scene
 
 PairLaw = Callable[..., float]
 
@@ -44,9 +45,8 @@ class MaterialLaw(NamedTuple):
     offset: float
     hamaker: float
 
-    def attraction(self, gap: ArrayLike, radius: ArrayLike, scene: Scene) -> NDArray[np.float64]:
+    def attraction(self, gap: ArrayLike, radius: ArrayLike, scene: GearScene) -> NDArray[np.float64]:
         """Attraction [N] of the material across gaps between flanks with reduced radii [m]."""
-        assert scene.gears is not None
         own_gap = np.asarray(gap) + self.offset * scene.surface.roughness
         unit = attraction_force(own_gap, 1.0, scene.gears.face_width, self.hamaker)
         return np.asarray(unit * np.sqrt(np.asarray(radius)))
@@ -109,8 +109,7 @@ def contact_resonance(scene: Scene, joined: float | None = None) -> float:
     SceneError
         If the scene has no gears or no drive torque that presses them together.
     """
-    if scene.gears is None or scene.drive is None:
-        raise SceneError("scene", scene.name, "must be a scene with gears")
+    scene = require_gears(scene)
     torque = mean_drive_torque(scene)
     if not torque > 0.0:
         raise SceneError("drive.torque", torque, "must not be 0, or nothing presses the teeth together")
@@ -147,6 +146,7 @@ def pair_law(scene: Scene) -> PairLaw:
         ``law(gap, joined, radius, opened)`` [m] gives the force [N], positive pushes apart. `joined` is the gap to
         which the pair has been pressed, `opened` (optional) the widest to which it has come since.
     """
+    scene = require_gears(scene)
     roughness, parts = scene.surface.roughness, material_laws(scene)
 
     def law(gap: float, joined: float, radius: float, opened: float = -math.inf) -> float:
@@ -163,7 +163,7 @@ def pair_law(scene: Scene) -> PairLaw:
     return law
 
 
-def material_laws(scene: Scene) -> dict[str, MaterialLaw]:
+def material_laws(scene: GearScene) -> dict[str, MaterialLaw]:
     """Force laws of the materials of a scene's teeth, as far as they have a share.
 
     Parameters
@@ -178,7 +178,6 @@ def material_laws(scene: Scene) -> dict[str, MaterialLaw]:
         material's share, its stretch limit over the roughness, its table (see `gearidae.contact.kernels.law`), its
         gap offset over the roughness, and its Hamaker constant times the share [J].
     """
-    assert scene.gears is not None
     roughness, width = scene.surface.roughness, scene.gears.face_width
     laws = {}
     for surface, share, offset, name in scene.materials():
@@ -192,7 +191,7 @@ def material_laws(scene: Scene) -> dict[str, MaterialLaw]:
     return laws
 
 
-def leaving_radii(scene: Scene) -> tuple[float, list[float]]:
+def leaving_radii(scene: GearScene) -> tuple[float, list[float]]:
     """Reduced radii of the pair at the end of its path of contact, and of those behind it [m].
 
     Returns
@@ -206,7 +205,7 @@ def leaving_radii(scene: Scene) -> tuple[float, list[float]]:
     return float(reduced[0]), [float(radius) for radius in reduced[1:]]
 
 
-def settled_gap(scene: Scene, balance: Callable[[float], float]) -> float:
+def settled_gap(scene: GearScene, balance: Callable[[float], float]) -> float:
     """Widest gap at which a force balance holds: where teeth that approach come to rest.
 
     Parameters
@@ -227,7 +226,7 @@ def settled_gap(scene: Scene, balance: Callable[[float], float]) -> float:
     return _DEEPEST * sigma
 
 
-def nearest_gap(scene: Scene, balance: Callable[[float], float], gap: float) -> float:
+def nearest_gap(scene: GearScene, balance: Callable[[float], float], gap: float) -> float:
     """Gap at which a force balance holds, next to one where it nearly does.
 
     Parameters

@@ -17,7 +17,7 @@ from gearidae.studies.failures import FAILS
 
 if TYPE_CHECKING:
     from gearidae.records import Solution
-    from gearidae.scene import Scene
+    from gearidae.scene import GearScene
 
 SUMS: Final = {
     "pinion hub": "pinion_hub_sliding",
@@ -71,7 +71,7 @@ class Slid:
         return cls(tuple(numbers["sliding"]), numbers["rate"], numbers["drift"])
 
 
-def settling_scene(scene: Scene, turns: Turns) -> Scene:
+def settling_scene(scene: GearScene, turns: Turns) -> GearScene:
     """Return the scene that settles: it keeps the sums, and its name says what is measured afterwards."""
     return scene.replace(
         {
@@ -85,7 +85,7 @@ def settling_scene(scene: Scene, turns: Turns) -> Scene:
     )
 
 
-def run_turns(scene: Scene, turns: Turns, backend: str) -> tuple[Solution, str]:
+def run_turns(scene: GearScene, turns: Turns, backend: str) -> tuple[Solution, str]:
     """Run a scene to its end, then blocks of turns until what the joints slide is steady.
 
     Parameters
@@ -109,7 +109,7 @@ def run_turns(scene: Scene, turns: Turns, backend: str) -> tuple[Solution, str]:
     return replace(solution, events=unsolved("", "").events, checkpoint=None), word
 
 
-def _measured(scene: Scene, turns: Turns, backend: str) -> tuple[Solution, str]:
+def _measured(scene: GearScene, turns: Turns, backend: str) -> tuple[Solution, str]:
     before, place = _solved(scene, backend), scene
     start, rate = engine.AT_ONCE, _late_rate(before, scene)
     blocks: list[Floats] = []
@@ -129,15 +129,14 @@ def _measured(scene: Scene, turns: Turns, backend: str) -> tuple[Solution, str]:
     return before, f"{FAILS}the gear does not turn on at {before.reached:g} s in {scene.name}"
 
 
-def _late_rate(settled: Solution, scene: Scene) -> float:
+def _late_rate(settled: Solution, scene: GearScene) -> float:
     """Turns of the pinion in a second, in the second half of a run to its end; 0 if that is not known."""
-    assert scene.gears is not None
     speed = math.nan if settled.extremes is None else abs(settled.extremes.late_gear_speed)
     rate = speed * scene.gears.gear_teeth / (2.0 * math.pi * scene.gears.pinion_teeth)
     return 0.0 if math.isnan(rate) else rate
 
 
-def _solved(scene: Scene, backend: str, start: engine.Start = engine.AT_ONCE) -> Solution:
+def _solved(scene: GearScene, backend: str, start: engine.Start = engine.AT_ONCE) -> Solution:
     solution = solve_to_end(scene, backend, start)
     if solution.extremes is None or solution.status != "finished":
         raise unfinished(solution, f"the run of {scene.name}")
@@ -150,18 +149,16 @@ def _stands(solution: Solution) -> bool:
     return extremes is None or not (math.isnan(extremes.stick_time) and math.isnan(extremes.back_time))
 
 
-def _block(scene: Scene, turns: Turns, rate: float) -> Scene:
+def _block(scene: GearScene, turns: Turns, rate: float) -> GearScene:
     """Return the scene of a block, with the time that it may take at a rate of turns of the pinion."""
-    assert scene.gears is not None
     way = turns.count * scene.gears.pinion_teeth / scene.gears.gear_teeth
     return scene.replace({"run.stop": f"turns {way!r}", "run.duration": _PATIENCE * turns.count / rate})
 
 
 def _gained(
-    after: Solution, before: Solution, start: engine.Start, block: Scene
+    after: Solution, before: Solution, start: engine.Start, block: GearScene
 ) -> tuple[Floats, float, float]:
     """What a block has slid [N m], the time it took [s], and turns of the pinion."""
-    assert block.gears is not None
     assert after.checkpoint is not None
     assert start.place is not None
     end = engine.end_of(block, after.checkpoint, start.time)

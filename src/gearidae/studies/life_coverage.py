@@ -24,7 +24,7 @@ from gearidae.wear import Exposure
 
 if TYPE_CHECKING:
     from gearidae.records import Solution
-    from gearidae.scene import Coating, Scene
+    from gearidae.scene import Coating, GearScene
 
 RESOLUTIONS = ("uniform", "place", "tooth")
 
@@ -90,7 +90,7 @@ class Coverage:
             return {f"coating.{side}_fraction": part.item() for side, part in zip(_SIDES, parts, strict=True)}
         return {"coating.sam_fraction": parts[0].item()}
 
-    def exposure(self, scene: Scene, solution: Solution, cycles: int, state: Floats) -> Exposure:
+    def exposure(self, scene: GearScene, solution: Solution, cycles: int, state: Floats) -> Exposure:
         """What each number of a state is exposed to in one passage.
 
         Parameters
@@ -152,16 +152,15 @@ def _gathered(tables: Sequence[Floats], area: Floats, cycles: int, shape: tuple[
     return found
 
 
-def _gear_over_pinion(scene: Scene, places: int) -> Floats:
+def _gear_over_pinion(scene: GearScene, places: int) -> Floats:
     """Exposure per area of the gear's flank and passage of the pinion's teeth, over that of the pinion's flank."""
-    assert scene.gears is not None
     pinion, gear = exposure_coordinates(scene)["flank_area"][1], gear_flank_areas(scene)
     if places == 1:
         pinion, gear = pinion.sum(keepdims=True), gear.sum(keepdims=True)
     return np.asarray(pinion / gear * scene.gears.pinion_teeth / scene.gears.gear_teeth)
 
 
-def coverage_of(scene: Scene, resolved: str, places: int) -> Coverage:
+def coverage_of(scene: GearScene, resolved: str, places: int) -> Coverage:
     """Read the coverage that a life begins with.
 
     Raises
@@ -172,7 +171,6 @@ def coverage_of(scene: Scene, resolved: str, places: int) -> Coverage:
     if resolved not in RESOLUTIONS:
         raise SceneError("resolved", resolved, "must be one of " + ", ".join(RESOLUTIONS))
     coating, gears = scene.coating, scene.gears
-    assert gears is not None
     independent = coating.pairing == "independent"
     if resolved == "uniform":
         if coating.by_place:

@@ -35,7 +35,7 @@ from gearidae.wear import LossLaw
 
 if TYPE_CHECKING:
     from gearidae.records import Solution
-    from gearidae.scene import Scene
+    from gearidae.scene import GearScene
     from gearidae.wear import Exposure
 
 MOST_STATES: Final = 1000
@@ -61,7 +61,7 @@ class StateResult:
 class Windows:
     """The windows so far, and where more of them are computed."""
 
-    scene: Scene
+    scene: GearScene
     coverage: Coverage
     law: LossLaw
     cycles: Cycles
@@ -106,7 +106,7 @@ class Windows:
             self.say()
         return self.seen[key]
 
-    def scene_at(self, state: Floats) -> Scene:
+    def scene_at(self, state: Floats) -> GearScene:
         """Return the scene of a window with the coverage of a state."""
         return self.scene.replace(self.coverage.changes(state))
 
@@ -116,7 +116,6 @@ class Windows:
             self.report(float(len(self.seen)), MOST_STATES)
 
     def _run(self, state: Floats) -> StateResult:
-        assert self.scene.initial is not None
         changed = self.scene_at(state)
         phase = self.scene.initial.mesh_phase
         scenes = [
@@ -168,9 +167,7 @@ class DirectCycles:
     @property
     def cycle(self) -> float:
         """A mesh cycle in passages of each tooth."""
-        gears = self.windows.scene.gears
-        assert gears is not None
-        return 1.0 / gears.pinion_teeth
+        return 1.0 / self.windows.scene.gears.pinion_teeth
 
     @property
     def worth(self) -> float:
@@ -232,10 +229,9 @@ class DirectCycles:
         start = engine.end_of(scene, found.checkpoint, here.start.time)
         return _BetweenCycles(here.passages + self.cycle, after, start, found, here.passages, state)
 
-    def _see(self, scene: Scene, found: Solution, here: _BetweenCycles) -> StateResult:
+    def _see(self, scene: GearScene, found: Solution, here: _BetweenCycles) -> StateResult:
         """What a cycle has shown; where the coverage is that of the run before, its exposures go on."""
         assert found.extremes is not None
-        assert scene.gears is not None
         assert here.start.scene is not None
         same = scene.coating == here.start.scene.coating
         exposures = gained(found, here.run if same else None, scene)

@@ -24,7 +24,7 @@ from gearidae.scene.friction import has_flank_friction
 
 if TYPE_CHECKING:
     from gearidae.records import Solution
-    from gearidae.scene import Scene
+    from gearidae.scene import GearScene
 
 _PATIENCE: Final = 4.0
 """Time that each part of a window gets, over that of its cycles at the steady speed."""
@@ -57,10 +57,8 @@ class Cycles:
         return self.settle + self.count * (1 if self.tolerance == math.inf else 2)
 
 
-def window_scene(scene: Scene, cycles: Cycles, places: int) -> Scene:
+def window_scene(scene: GearScene, cycles: Cycles, places: int) -> GearScene:
     """Return the scene of a window, with the time of all of it: it keeps the exposures."""
-    assert scene.gears is not None
-    assert scene.initial is not None
     speed = steady_speed(scene)
     if not 0.0 < speed < math.inf:
         speed = scene.initial.gear_speed
@@ -97,7 +95,7 @@ class Window:
     start: engine.Start | None = None
 
 
-def run_window(scene: Scene, cycles: Cycles, backend: str) -> tuple[Solution, str]:
+def run_window(scene: GearScene, cycles: Cycles, backend: str) -> tuple[Solution, str]:
     """Run a window.
 
     Parameters
@@ -141,7 +139,7 @@ def with_exposures(found: Solution, exposures: Floats) -> Solution:
     return replace(found, extremes=extremes)
 
 
-def steady_window(scene: Scene, cycles: Cycles, backend: str) -> Window:
+def steady_window(scene: GearScene, cycles: Cycles, backend: str) -> Window:
     """Run blocks of cycles until they are steady, from the start of a scene.
 
     Parameters
@@ -176,7 +174,7 @@ def steady_window(scene: Scene, cycles: Cycles, backend: str) -> Window:
         before = found
 
 
-def part_of(scene: Scene, cycles: int, total: int, patience: float = 1.0) -> Scene:
+def part_of(scene: GearScene, cycles: int, total: int, patience: float = 1.0) -> GearScene:
     """Return the scene of some of a window's mesh cycles, with their share of its time.
 
     Parameters
@@ -188,7 +186,6 @@ def part_of(scene: Scene, cycles: int, total: int, patience: float = 1.0) -> Sce
     patience : float, optional
         Times that share.
     """
-    assert scene.gears is not None
     return scene.replace(
         {
             "run.stop": f"turns {cycles / scene.gears.gear_teeth!r}",
@@ -225,14 +222,14 @@ def steady_exposures(blocks: Sequence[Floats], tolerance: float) -> Floats | Non
     return blocks[-1] if drift <= tolerance * contacts[-1] or len(blocks) == _MOST_BLOCKS else None
 
 
-def stands(solution: Solution, scene: Scene) -> bool:
+def stands(solution: Solution, scene: GearScene) -> bool:
     """Whether the gear stands at the end of a run that was to end after some turns, or has not turned so far."""
     found, reached = solution.extremes, solution.reached or 0.0
     late = reached - solution.start >= scene.run.duration * (1.0 - 1e-9)
     return found is None or late or not (math.isnan(found.stick_time) and math.isnan(found.back_time))
 
 
-def solved(scene: Scene, backend: str, start: engine.Start = engine.AT_ONCE) -> Solution:
+def solved(scene: GearScene, backend: str, start: engine.Start = engine.AT_ONCE) -> Solution:
     """Run some cycles.
 
     Raises
@@ -246,7 +243,7 @@ def solved(scene: Scene, backend: str, start: engine.Start = engine.AT_ONCE) -> 
     return solution
 
 
-def gained(solution: Solution, before: Solution | None, scene: Scene) -> Floats:
+def gained(solution: Solution, before: Solution | None, scene: GearScene) -> Floats:
     """What a run has added to the exposures of the one before; largest pressures are those of both.
 
     Returns
@@ -262,7 +259,7 @@ def gained(solution: Solution, before: Solution | None, scene: Scene) -> Floats:
     return ours
 
 
-def _table(solution: Solution, scene: Scene) -> Floats:
+def _table(solution: Solution, scene: GearScene) -> Floats:
     assert solution.extremes is not None
     rows = _ROWS.per_tooth(rubs=has_flank_friction(scene))
     return np.array(solution.extremes.exposures).reshape(-1, rows, scene.run.exposures)

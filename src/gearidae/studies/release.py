@@ -30,7 +30,7 @@ from gearidae.asperities.tip import asperity_of
 from gearidae.studies.equilibrium import leaving_radii, nearest_gap, pair_law, settled_gap
 
 if TYPE_CHECKING:
-    from gearidae.scene import Scene
+    from gearidae.scene import GearScene
 
 _STEPS = 60
 """Places along the tip at which the pull is evaluated."""
@@ -38,7 +38,7 @@ _REACH = 4.0
 """The tip is followed until it has opened the gap by this many roughnesses more than asperities stretch."""
 
 
-def holding_forces(scene: Scene, force: float, impacts: int) -> list[float]:
+def holding_forces(scene: GearScene, force: float, impacts: int) -> list[float]:
     """Largest resistance of the leaving pair at successive mesh exits.
 
     Parameters
@@ -55,7 +55,6 @@ def holding_forces(scene: Scene, force: float, impacts: int) -> list[float]:
     list of float
         ``max(-s' W_l)`` at each exit [N], acting at the gear's base radius against its turning; 0 if nothing pulls.
     """
-    assert scene.mesh is not None
     law, rho = pair_law(scene), scene.mesh.tip_relief_radius
     leaving, staying = leaving_radii(scene)
     law_of_one = law_of_tip(scene.contact.asperity, asperity_of(scene.surface), 1.0)  # in metres

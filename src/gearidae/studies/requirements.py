@@ -10,18 +10,6 @@ if TYPE_CHECKING:
     from gearidae.scene import Scene
 
 
-def require_gears(scene: Scene) -> None:
-    """Refuse anything but a scene with gears.
-
-    Raises
-    ------
-    SceneError
-        If it is something else.
-    """
-    if getattr(scene, "gears", None) is None:
-        raise SceneError("scene", getattr(scene, "name", type(scene).__name__), "must be a scene with gears")
-
-
 def require_constant(scene: Scene, study: str, why: str, keys: tuple[str, ...] = ("drive", "load")) -> None:
     """Refuse torques and speeds that follow a schedule.
 

@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from gearidae.archive.energy import energy_balance
 from gearidae.archive.rows import LABELS, kinds_in, own_rows
 from gearidae.archive.run_summary import Account, account
-from gearidae.archive.select import is_roller, run_scene, runs, scene_of, swept_dims
-from gearidae.archive.single import single_run
+from gearidae.archive.select import is_roller, run_scene, runs, scene_of, single_run, swept_dims
 from gearidae.archive.tables import LARGEST_TABLE, row_table, run_labels, time_series
+from gearidae.archive.totals import energy_balance
 from gearidae.archive.variables import EXTREMES, STANDSTILL_LIST
 from gearidae.errors import SceneError
 from gearidae.records import Events, Passages

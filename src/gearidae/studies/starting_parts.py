@@ -29,7 +29,7 @@ from gearidae.runs.estimates import mean_force
 from gearidae.runs.rubbing import flank_coefficient, hub_radii, joint_loads
 
 if TYPE_CHECKING:
-    from gearidae.scene import Scene
+    from gearidae.scene import GearScene
 
 PARTS: Final = ("dry resistance", "adhesion of teeth", "friction of flanks", "hubs", "pin", "axial loads")
 """What takes a starting torque, in the order in which it is added up."""
@@ -50,14 +50,13 @@ class Starting:
         Those of `_ELEMENTS` that have friction.
     """
 
-    scene: Scene
+    scene: GearScene
     elements: frozenset[str] = frozenset(_ELEMENTS)
 
     @cached_property
     def ratio(self) -> float:
         """Torque of the pinion over the resistance of the gear that the teeth carry; infinite where it locks."""
         gears, geometry = self.scene.gears, self.scene.geometry
-        assert gears is not None
         hubs = gears.hub_friction if "hubs" in self.elements else 0.0
         return starting_ratio(geometry, self._flanks, hubs, hub_radii(self.scene))
 
@@ -81,12 +80,11 @@ class Starting:
 
     def torque(self) -> float:
         """Torque of the pinion that starts the gears while teeth do not hold the gear [N m]."""
-        assert self.scene.load is not None
         pinion, gear = self.joint_torques
         return self.ratio * (self.scene.load.torque + gear) + pinion
 
 
-def parts_of(scene: Scene, torques: ArrayLike) -> Floats:
+def parts_of(scene: GearScene, torques: ArrayLike) -> Floats:
     """Divide starting torques of the pinion into `PARTS`.
 
     Parameters

@@ -24,7 +24,7 @@ from gearidae.studies.starting_parts import WITHOUT_FLANKS, Starting
 
 if TYPE_CHECKING:
     from gearidae.records import Solution
-    from gearidae.scene import Scene
+    from gearidae.scene import GearScene
 
 DAMPING: Final = 0.03
 """Least mesh damping of these runs, over the critical one of one asperity without load."""
@@ -82,28 +82,25 @@ class Pitch(NamedTuple):
         return math.sqrt(2.0 * self.angle * self.inertia / (torque * self.ratio))
 
 
-def pitch_of(scene: Scene) -> Pitch:
+def pitch_of(scene: GearScene) -> Pitch:
     """Return the pitch of a scene with gears."""
     gears, geometry = scene.gears, scene.geometry
-    assert gears is not None
     ratio = geometry.base_radius_gear / geometry.base_radius_pinion
     inertia = gears.gear_inertia + gears.pinion_inertia * ratio**2
     return Pitch(2.0 * math.pi / gears.gear_teeth, inertia, ratio, Starting(scene, WITHOUT_FLANKS).torque())
 
 
-def least_damping(scene: Scene) -> float:
+def least_damping(scene: GearScene) -> float:
     """Mesh damping of the runs: the scene's own, or `DAMPING` of the critical one if that is more [N s/m].
 
     The stiffness is `asperity_stiffness`.
     """
-    assert scene.mesh is not None
     critical = 2.0 * math.sqrt(asperity_stiffness(scene) * effective_mass(scene))
     return max(scene.mesh.damping, DAMPING * critical)
 
 
-def laid(scene: Scene, seed: int) -> Scene:
+def laid(scene: GearScene, seed: int) -> GearScene:
     """Scene of a gear at rest, about to touch, at the place that its seed draws."""
-    assert scene.gears is not None
     at = scene.replace(
         {
             "contact.seed": seed,
@@ -120,13 +117,12 @@ def laid(scene: Scene, seed: int) -> Scene:
     return at.replace({"initial.gap": first_touch(at)})
 
 
-def place_of_seed(scene: Scene, seed: int) -> float:
+def place_of_seed(scene: GearScene, seed: int) -> float:
     """Place at which a gear of a seed starts, in pitches of the pinion."""
-    assert scene.gears is not None
     return float(np.random.default_rng([seed, 99]).random() * scene.gears.pinion_teeth)
 
 
-def pilot(at: Scene) -> Scene:
+def pilot(at: GearScene) -> GearScene:
     """Add a torque that doubles again and again to a scene from `laid`: it finds the scale of its starting torque."""
     pitch, surfaces = pitch_of(at), [one.surface for one in at.materials() if one.share > 0.0]
     tips = [asperity_of(one) for one in surfaces]
@@ -151,7 +147,7 @@ def ramp_end(pitch: Pitch, scale: float) -> float:
     return pitch.dry + _HIGHEST * scale
 
 
-def ramp(at: Scene, scale: float, halvings: int) -> Scene:
+def ramp(at: GearScene, scale: float, halvings: int) -> GearScene:
     """Add a torque that rises linearly to a scene from `laid`."""
     pitch = pitch_of(at)
     knots = _laying(pitch, _LAYING * scale, _SETTLING * pitch.time(scale))
@@ -161,7 +157,7 @@ def ramp(at: Scene, scale: float, halvings: int) -> Scene:
     return _driven(at, knots, _SAMPLES)
 
 
-def constant(at: Scene, scale: float, torque: float) -> Scene:
+def constant(at: GearScene, scale: float, torque: float) -> GearScene:
     """Add a torque that is there at once, after the flanks have been laid together, to a scene from `laid`."""
     pitch = pitch_of(at)
     beyond = torque - pitch.dry
@@ -172,7 +168,7 @@ def constant(at: Scene, scale: float, torque: float) -> Scene:
     return _driven(at, knots, 2)
 
 
-def run_from_rest(at: Scene, backend: str) -> tuple[Solution, str]:
+def run_from_rest(at: GearScene, backend: str) -> tuple[Solution, str]:
     """Run a scene of this module.
 
     Returns
@@ -182,7 +178,6 @@ def run_from_rest(at: Scene, backend: str) -> tuple[Solution, str]:
         without many samples, the torque at which it had. `RESTS` if it has not turned, `FAILS` and a message if the
         run could not be finished: one gear does not end a study of many.
     """
-    assert at.drive is not None
     for factor in _TIGHTER:
         solution = solve_to_end(at.replace({"run.rtol": max(factor * at.run.rtol, _TIGHTEST)}), backend)
         if solution.status == "finished":
@@ -217,7 +212,7 @@ def _laying(pitch: Pitch, torque: float, time: float) -> Knots:
     return knots if pitch.dry == 0.0 else [*knots, (2.0 * time, pitch.dry + torque)]
 
 
-def _driven(at: Scene, knots: Knots, samples: int) -> Scene:
+def _driven(at: GearScene, knots: Knots, samples: int) -> GearScene:
     return at.replace(
         {"drive": {"torque": 0.0, "schedule": knots}, "run.duration": knots[-1][0], "run.samples": samples}
     )

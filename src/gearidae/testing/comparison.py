@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import numpy as np
 import xarray as xr
 
-from gearidae.archive.energy import balance_of
 from gearidae.archive.rows import DIMS
 from gearidae.archive.select import run_scene, run_value, runs, swept_dims
+from gearidae.archive.totals import balance_of
 from gearidae.archive.variables import ENERGY_BALANCE, EVENTS, EXTREMES, OF_SWEPT_RUN, PASSAGES, RUN
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError

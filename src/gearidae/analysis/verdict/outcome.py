@@ -15,11 +15,10 @@ import xarray as xr
 from gearidae.analysis.verdict.earlier import OLD, earlier_verdict, is_earlier
 from gearidae.analysis.verdict.judge import gear_verdict, in_touch, is_scheduled, roller_verdict
 from gearidae.analysis.verdict.table import Outcomes, Shown
-from gearidae.archive.energy import doubt, imbalance, imbalance_of
-from gearidae.archive.extremes import extremes_of
 from gearidae.archive.pieces import count, pieces
 from gearidae.archive.select import is_roller, refuse_other_labels, run_value, runs, scene_of, swept_dims
 from gearidae.archive.tables import run_labels
+from gearidae.archive.totals import doubt, extremes_of, imbalance, imbalance_of
 from gearidae.errors import SceneError
 from gearidae.records import RUN_PARTS, EventKind, Extremes
 from gearidae.records.standing import Holding

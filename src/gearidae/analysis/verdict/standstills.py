@@ -8,8 +8,8 @@ from typing import Any
 import xarray as xr
 
 from gearidae.analysis.verdict.judge import standing_verdict
-from gearidae.archive.extremes import standstills_from_text
 from gearidae.archive.select import runs, swept_dims
+from gearidae.archive.totals import standstills_from_text
 from gearidae.archive.variables import STANDSTILL_LIST
 from gearidae.errors import SceneError
 from gearidae.records.standing import COLUMNS, Holding

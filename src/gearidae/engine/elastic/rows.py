@@ -14,7 +14,7 @@ import numpy as np
 from gearidae.compiled import compiled
 from gearidae.contact.bulk import STENCIL
 from gearidae.contact.kernels.lanes import LANES, add_lanes, product_of_lanes
-from gearidae.engine.model.state import MATERIALS, ROLLER, Floats, Model
+from gearidae.engine.model.state import MATERIALS, MOTION, Floats, Model
 
 FINER: Final = 4
 """Steps from point to point in one from node to node."""
@@ -109,8 +109,7 @@ def joined_at(m: Model, k: int, material: int) -> int:
 @compiled
 def first_unknown(m: Model, k: int) -> int:
     """Place in the state of the first deflection of a history's pair, that of the middle."""
-    motion = 2 if m.scene.kind == ROLLER else 4
-    return motion + k * m.scene.nodes
+    return MOTION + k * m.scene.nodes
 
 
 @compiled(makes_arrays=True)

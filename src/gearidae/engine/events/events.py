@@ -18,7 +18,7 @@ from gearidae.engine.events.mesh_marks import cross_mark, crossed_mark, mark_gua
 from gearidae.engine.events.pair_events import pair_guard
 from gearidae.engine.events.run_stop import stop_guard
 from gearidae.engine.events.sliding import REVERSALS_HIGH, dry_guard
-from gearidae.engine.model.state import COAST, DRIVE, GEARS, Floats, Model
+from gearidae.engine.model.state import COAST, DRIVE, Floats, Model
 from gearidae.engine.pairs.tooth_pairs import (
     flank_of_history,
     gap_and_rate,
@@ -46,15 +46,13 @@ def guard(m: Model, t: float, y: Floats) -> float:
     mesh, the dry resistance, a flank coming near) is positive while it waits, so that the least of them waits for
     them all. What has happened is disarmed where it is dealt with, and the next in the same step is found in its turn.
     """
-    least = math.inf
-    if m.scene.kind == GEARS:
-        least = mark_guard(m, y)
-        if m.scene.stop != 0:
-            least = min(least, stop_guard(m, t, y))
-        if m.scene.friction.on != 0:
-            least = min(least, dry_guard(m, t, y))
-        if m.state.near[COAST] == 0:
-            least = min(least, nearest_gap(m, COAST, y) - m.scene.cutoff)
+    least = mark_guard(m, y)
+    if m.scene.stop != 0:
+        least = min(least, stop_guard(m, t, y))
+    if m.scene.friction.on != 0:
+        least = min(least, dry_guard(m, t, y))
+    if m.state.near[COAST] == 0:
+        least = min(least, nearest_gap(m, COAST, y) - m.scene.cutoff)
     if m.state.near[DRIVE] == 0:
         least = min(least, nearest_gap(m, DRIVE, y) - m.scene.cutoff)
     if m.scene.population.flanks != 0:
@@ -93,8 +91,6 @@ def handle_mesh(m: Model, t: float, y: Floats, events: Floats, count: int) -> tu
     crossed, restart : bool
         Whether the phase has crossed a mark of the mesh, and whether the integration must begin anew.
     """
-    if m.scene.kind != GEARS:
-        return count, False, False
     restart, crossed = False, crossed_mark(m, y)
     if crossed:
         count = cross_mark(m, t, y, events, count)

@@ -10,7 +10,7 @@ from gearidae.engine.elastic.nodes import middle_gap
 from gearidae.engine.events.asperity_events import join_at_start
 from gearidae.engine.events.mesh_marks import set_marks
 from gearidae.engine.events.sliding import begin_sliding
-from gearidae.engine.model.state import EMPTY, GEARS, MATERIALS, PHASE, ROLLER, Floats, Model
+from gearidae.engine.model.state import EMPTY, MATERIALS, PHASE, Floats, Model
 from gearidae.engine.pairs.tooth_pairs import (
     gap_and_rate,
     history_of,
@@ -26,7 +26,7 @@ from gearidae.engine.population.candidates import forget
 def accept(m: Model, t: float, y: Floats) -> None:
     """Follow the histories to an accepted time; beyond the cut-off nothing is joined and nothing is remembered."""
     m.state.time = t
-    for coast in range(1 if m.scene.kind == ROLLER else 2):
+    for coast in range(2):
         if nearest_gap(m, coast, y) < m.scene.cutoff:
             m.state.near[coast] = 1
         elif m.state.near[coast] != 0:
@@ -86,11 +86,10 @@ def init_history(m: Model, k: int, pair: int, gap: float, middle: float) -> None
 @compiled(makes_arrays=True)
 def begin(m: Model, t: float, y: Floats) -> None:
     """Set the histories and mesh marks for a start at `y`."""
-    for coast in range(1 if m.scene.kind == ROLLER else 2):
+    for coast in range(2):
         clear_history(m, coast)
     accept(m, t, y)
-    if m.scene.kind == GEARS:
-        set_marks(m, y[PHASE])
+    set_marks(m, y[PHASE])
     if m.scene.population.flanks != 0:
         join_at_start(m, y)
     if m.scene.friction.on != 0:

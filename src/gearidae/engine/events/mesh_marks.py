@@ -14,6 +14,8 @@ from gearidae.records import EventKind
 _MESH_ENTRY, _MESH_EXIT = float(EventKind.MESH_ENTRY), float(EventKind.MESH_EXIT)
 MARKS: Final = 4
 """Kinds of marks in each pitch."""
+FAR: Final = 2.0**40
+"""Phase of a mark where the mesh has none."""
 RELIEF_PER_STEP: Final = 0.25
 """How far the tip relief may open a gap in one step after a mesh mark, over the roughness: asperities part over one to
 three of it."""
@@ -46,9 +48,12 @@ def first_mark(m: Model, k: int) -> float:
 
 @compiled
 def set_marks(m: Model, phase: float) -> None:
-    """Bracket the phase by the nearest mesh entries and exits of either flank."""
-    low, high = -math.inf, math.inf
-    for k in range(MARKS):
+    """Bracket the phase by the nearest mesh entries and exits of either flank.
+
+    Where the mesh has no marks both are far away, and so that no pair is on a path of contact between them.
+    """
+    low, high = -FAR - 1.0, FAR
+    for k in range(m.scene.marks):
         mark = first_mark(m, k)
         whole = math.floor(phase - mark)
         if whole + mark > phase:  # the difference was rounded up to a whole number

@@ -35,7 +35,7 @@ from typing import Final
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.energy.contacts import stored_energy
-from gearidae.engine.energy.kinetic import kinetic_energy
+from gearidae.engine.energy.kinetic import energy_of_speeds, kinetic_energy
 from gearidae.engine.energy.radius import radius_power
 from gearidae.engine.events.mesh_marks import crossed_mark
 from gearidae.engine.events.pair_events import newly_stretched
@@ -50,7 +50,7 @@ from gearidae.engine.formulas.quadrature import (
     integral_of_square,
     torque_work,
 )
-from gearidae.engine.model.state import DRIVE, GEARS, LOAD, MATERIALS, PHASE, ROLLER, Floats, Model, U, V, W
+from gearidae.engine.model.state import DRIVE, LOAD, MATERIALS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.pairs.squeeze_film import film_loss
 from gearidae.engine.pairs.tooth_pairs import (
@@ -90,8 +90,6 @@ def begin(m: Model, t: float, y: Floats, yp: Floats) -> None:
     q.length_work = 0.0
     q.time = t
     q.kinetic = kinetic_energy(m, y)
-    if m.scene.kind == ROLLER:
-        return
     q.gear_travel, q.gear_speed, q.gear_acceleration = y[PHASE] / m.scene.phase_rate, y[W], yp[W]
     _note_resistance(m, t, q.gear_travel, y, yp)
     q.pinion_travel, q.pinion_speed, q.pinion_acceleration = _pinion(m, y, yp)
@@ -123,7 +121,7 @@ def step(
     if at[1] and _can_wait(m, t, y):
         return
     a, parts, start = m.work.adams, 1, m.work.resistance.time
-    if a.order_used > ORDER and in_flight(m) and m.scene.kind == GEARS:
+    if a.order_used > ORDER and in_flight(m):
         parts = m.scene.flight_parts
         start = max(start, a.time - a.last_step)
     for part in range(1, parts):
@@ -137,10 +135,10 @@ def step(
 def _can_wait(m: Model, t: float, y: Floats) -> bool:
     """Whether no sample is needed at a root, before its events are dealt with.
 
-    That is so where gears' pairs touch, part or turn round and nothing else happens: up to their third derivative the
+    That is so where pairs touch, part or turn round and nothing else happens: up to their third derivative the
     powers know nothing of it.
     """
-    if m.scene.kind == ROLLER or m.scene.nodes > 0 or m.state.bound_exceeded != 0:
+    if m.scene.nodes > 0 or m.state.bound_exceeded != 0:
         return False
     if m.scene.population.flanks != 0 or m.scene.friction.rubs != 0:  # forces jump
         return False
@@ -175,7 +173,7 @@ def resume(m: Model, t: float, y: Floats, crossed: bool, joined: bool) -> None:
     q = m.work.quadrature
     if m.scene.dry != 0 and q.time == t:
         m.state.energy.dry_loss += q.kinetic - kinetic_energy(m, y)
-    if crossed or (joined and m.scene.nodes > 0 and m.scene.kind == GEARS):
+    if crossed or (joined and m.scene.nodes > 0):
         _sample_radius_power(m, t, y)
 
 
@@ -196,17 +194,13 @@ def _sample_radius_power(m: Model, t: float, y: Floats) -> None:
 def _accumulate(m: Model, t: float, y: Floats, yp: Floats, now: bool) -> None:
     """Add all works and losses up to a time, `now` or once so many steps have been taken."""
     q = m.work.quadrature
-    if m.scene.kind == GEARS:
-        _accumulate_losses(m, t, y, yp)
+    _accumulate_losses(m, t, y, yp)
     q.steps += 1
     h = t - q.time
     if h == 0.0 or not (now or in_flight(m) or _closes_interval(m, h)):
         return
     q.steps = 0
     q.time = t
-    if m.scene.kind == ROLLER:
-        _book_kinetic(m, kinetic_energy(m, y), 0.0)
-        return
     w, w_rate = y[W], yp[W]
     gear = y[PHASE] / m.scene.phase_rate
     speed, exchange, error = _book_drive(m, h, t, y, yp)
@@ -222,8 +216,7 @@ def _accumulate(m: Model, t: float, y: Floats, yp: Floats, now: bool) -> None:
     q.length_work = 0.0
     q.radius_power, q.radius_power_rate = power, rate
     e.radius_work += radius
-    kinetic = 0.5 * speed * speed / m.scene.pinion_inverse_mass + 0.5 * w * w / m.scene.gear_inverse_mass
-    _book_kinetic(m, kinetic, exchange + abs(radius))
+    _book_kinetic(m, energy_of_speeds(m, speed, w), exchange + abs(radius))
 
 
 @compiled(inline=True)
@@ -354,7 +347,7 @@ def look(m: Model, t: float, y: Floats) -> None:
     e.radius_work += radius
     e.quadrature_error += e.loss_error
     now.largest = e.peak_kinetic + abs(e.start_stored) + abs(e.model_change)
-    if m.scene.kind == GEARS:
+    if m.scene.gear_inverse_mass != 0.0:  # a gear that is held has neither travel nor speed
         pinion, gear, twice = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass, 2.0 * e.peak_kinetic
         now.pitch_work = 2.0 / m.scene.phase_rate  # both shafts' torques are at most the unit of force
         now.speed_work = math.sqrt(twice / pinion) + math.sqrt(twice / gear)

@@ -16,7 +16,7 @@ from gearidae.engine.followers.exposures import follow as exposures
 from gearidae.engine.followers.exposures.asperities import add_flips
 from gearidae.engine.followers.extremes import follow as extremes
 from gearidae.engine.model.located import model_at
-from gearidae.engine.model.state import GEARS, Floats, Model, W
+from gearidae.engine.model.state import Floats, Model, W
 
 
 @compiled
@@ -51,7 +51,7 @@ def step(
         Work space.
     """
     if m.scene.follow.balance != 0:
-        joining.step(m, t, y, yp[W] if m.scene.kind == GEARS else 0.0)
+        joining.step(m, t, y, yp[W])
     if m.scene.follow.friction != 0:
         rubbing.book_rubbing(m, t, y, at[1], between[0], between[1])
     if m.scene.follow.extremes != 0:

@@ -15,8 +15,8 @@ from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.energy.contacts import joining_losses
 from gearidae.engine.formulas.quadrature import integral
-from gearidae.engine.model.state import GEARS, PHASE, Floats, Model, V, W
-from gearidae.engine.pairs.coverage import NONE, WHOLE, Shares, path_position, shares_of, weighed
+from gearidae.engine.model.state import PHASE, Floats, Model, V, W
+from gearidae.engine.pairs.coverage import NONE, Shares, path_position, shares_of, weighed
 from gearidae.engine.pairs.lengths import weighed_length
 from gearidae.engine.pairs.tooth_pairs import (
     contact_length,
@@ -36,7 +36,7 @@ def begin(m: Model, t: float) -> None:
 
 @compiled(inline=True)
 def step(m: Model, t: float, y: Floats, w_rate: float) -> None:
-    """Follow the lags of closing gear contacts to an accepted time.
+    """Follow the lags of closing contacts to an accepted time.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def step(m: Model, t: float, y: Floats, w_rate: float) -> None:
         Acceleration of the gear's surface there.
     """
     h = t - m.work.lag_time
-    if m.scene.kind == GEARS and h > 0.0:
+    if h > 0.0:
         m.work.lag_time = t
         _follow_pairs(m, h, y, w_rate)
 
@@ -61,9 +61,6 @@ def event(m: Model, y: Floats, coast: int, pair: int, k: int, gap: float) -> Non
     if m.state.history[k].direction > 0.0:
         return
     e, losses = m.state.energy, joining_losses(m, k, y, gap)[0]
-    if m.scene.kind != GEARS:
-        e.adhesion_loss += weighed(WHOLE, losses)
-        return
     lag, inside = m.state.history[k].lag, path_position(m, coast, pair, y[PHASE])
     e.adhesion_loss += contact_length(m, inside) * weighed(shares_of(m, coast, pair, inside), losses) - lag
     if m.scene.radius_force == 0:

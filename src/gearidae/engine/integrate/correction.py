@@ -1,13 +1,13 @@
 """One correction of Newton's to a motion: residual and Jacobian at once, and the equations solved by elimination.
 
 Two of a gear pair's four equations only say that u' = v and that the phase turns with w. They are put into the other
-two, which leaves two equations for the corrections of v and w; a roller keeps one.
+two, which leaves two equations for the corrections of v and w.
 """
 
 from __future__ import annotations
 
 from gearidae.compiled import compiled
-from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, U, V, W
+from gearidae.engine.model.state import PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.residual import motion
 from gearidae.engine.motion.shafts import acceleration_slopes
 
@@ -20,7 +20,7 @@ def correct(m: Model, t: float, cj: float, y: Floats, yp: Floats, delta: Floats)
     ----------
     t, cj : float
         Time over tau, and what the rates change by with the state.
-    y, yp, delta : ndarray, shape (4,) or (2,)
+    y, yp, delta : ndarray, shape (4,)
         State, its rate, and where the correction goes.
 
     Returns
@@ -33,10 +33,6 @@ def correct(m: Model, t: float, cj: float, y: Floats, yp: Floats, delta: Floats)
     step, of_u, of_v = 1.0 / cj, delta[U], delta[V]
     # du = (dv - of_u) step and dphase = (turning dw - of_phase) step, put into the rows of v and w
     v_v = cj - s.pinion_v - s.pinion_u * step
-    if m.scene.kind == ROLLER:
-        delta[V] = -(of_v + s.pinion_u * step * of_u) / v_v
-        delta[U] = (delta[V] - of_u) * step
-        return abs(s.pinion_u)
     turning, of_phase, of_w = m.scene.phase_rate, delta[PHASE], delta[W]
     v_w = cj - s.pinion_w - s.pinion_phase * turning * step
     w_v, w_w = -s.gear_v - s.gear_u * step, cj - s.gear_w - s.gear_phase * turning * step

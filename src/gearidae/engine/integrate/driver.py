@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import Final, NamedTuple
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Final, NamedTuple, Protocol
 
 import numpy as np
 
@@ -12,6 +13,9 @@ from gearidae.engine.events.record import EVENT_NUMBERS
 from gearidae.engine.followers.passages import PASSAGE_NUMBERS, units
 from gearidae.engine.model.state import Floats, Model, Record
 from gearidae.records import COUNTERS, Block, Ending, EnergyBalance, Extremes, Passages, Statistics
+
+if TYPE_CHECKING:
+    from gearidae.engine.setup.problem import Problem
 
 __all__ = [
     "BLOCK_EVENTS",
@@ -28,6 +32,7 @@ __all__ = [
     "Block",
     "Ending",
     "Output",
+    "SampleReader",
     "ending_of_flag",
     "sample_time",
     "update_statistics",
@@ -79,6 +84,25 @@ def update_statistics(statistics: Statistics, progress: Record) -> None:
         setattr(statistics, each.name, int(progress[each.name]))
 
 
+class SampleReader(Protocol):
+    """What reads the model at some samples, between the last accepted time and the next."""
+
+    @property
+    def sample(self) -> int:
+        """Coming sample to read at; below zero where there is none any more."""
+
+    def read(self, problem: Problem, t: float, state: Callable[[], Floats]) -> None:
+        """Read at the coming sample; the model stays as it is.
+
+        Parameters
+        ----------
+        t : float
+            Time of the sample over tau.
+        state : callable
+            Returns the scaled state there.
+        """
+
+
 class Output(NamedTuple):
     """Samples, events and passages of a block, before it is handed out.
 
@@ -102,6 +126,13 @@ class Output(NamedTuple):
             np.empty((BLOCK_EVENTS, EVENT_NUMBERS)),
             np.empty((BLOCK_PASSAGES, PASSAGE_NUMBERS)),
         )
+
+    def before(self, m: Model, sample: int) -> Output:
+        """Room for what comes before a sample, if there is one to come: the step that has it waits."""
+        if sample < 0:
+            return self
+        count = int(m.work.driver.rows) + max(sample - int(m.state.progress.next_sample), 0)
+        return self._replace(rows=self.rows[:count])
 
     def block(
         self,

@@ -26,7 +26,7 @@ from gearidae.engine.integrate.resting import begin_rest, comes_to_rest
 from gearidae.engine.integrate.start import PHASE_HIGH, rebase, set_rates
 from gearidae.engine.integrate.step_control import change_wanted
 from gearidae.engine.model.record_types import FREE
-from gearidae.engine.model.state import GEARS, PHASE, Floats, Model
+from gearidae.engine.model.state import PHASE, Floats, Model
 from gearidae.engine.pairs.tooth_pairs import flank_of_history, in_flight, list_known
 
 
@@ -68,8 +68,7 @@ def finish_step(
         driver.error = BOUND_EXCEEDED
     if in_flight(m):
         m.state.progress.flight_steps += 1
-    afresh = m.scene.kind == GEARS and abs(y[PHASE]) > PHASE_HIGH
-    afresh |= change_wanted(m, y, yp) or comes_to_rest(m, t, y)
+    afresh = change_wanted(m, y, yp) or comes_to_rest(m, t, y) or abs(y[PHASE]) > PHASE_HIGH
     if flag == ROOT:
         afresh |= handle(m, t, y, yp, out)
         if m.scene.stop != 0 and stop_guard(m, t, y) <= 0.0:

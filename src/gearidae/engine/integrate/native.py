@@ -28,6 +28,7 @@ from gearidae.engine.integrate.driver import (
     Block,
     Ending,
     Output,
+    SampleReader,
     ending_of_flag,
     sample_time,
     update_statistics,
@@ -116,6 +117,14 @@ def state_for_sample(s: Stepper, t: float) -> None:
         sun.IDAGetDky(s.handles[IDA], t, 0, s.handles[DKY])
     if is_eliminated(s.m):
         set_deflections(s.m, t, s.dky, False)
+
+
+@compiled
+def state_at_sample(place: int, arrays: Arrays, t: float) -> None:
+    """`state_for_sample`, for Python."""
+    m = model_at(place)
+    s = Stepper(arrays.handles, m, arrays.y, arrays.yp, arrays.dky, arrays.spare, arrays.clock)
+    state_for_sample(s, t)
 
 
 @compiled(inline=True)
@@ -219,6 +228,7 @@ def run(
     statistics: Statistics,
     resume: Floats | None = None,
     as_ida: bool = False,
+    reader: SampleReader | None = None,
 ) -> Iterator[Block]:
     """Run a problem, block by block.
 
@@ -237,6 +247,8 @@ def run(
     as_ida : bool
         Whether formulas, iteration and the state at a step's end are IDA's own: slower, less accurate, and equal to the
         portable driver to the last bit.
+    reader : SampleReader, optional
+        Reads the model at some of the samples.
     """
     m = problem.prepare(rtol, total)
     s = make_arrays(problem, m, as_ida)
@@ -244,6 +256,8 @@ def run(
     if resume is not None:
         s.clock[0] = problem.restore(resume, s.y)
     if total > 0 and m.state.progress.next_sample == 0:
+        if reader is not None and reader.sample == 0:
+            reader.read(problem, float(s.clock[0]), lambda: s.y)
         observe_at(problem.located.place, float(s.clock[0]), s.y, out.rows[0])
         m.work.driver.rows = m.state.progress.next_sample = 1
     place = problem.located.place
@@ -257,12 +271,14 @@ def run(
         if open_solver(s.handles, place, functions, places, vectors, CONVERGENCE_FAILURES_HIGH) != 0:
             statistics.ending = Ending.SOLVER_FAILURE
             return
-        yield from _blocks(problem, s, out, statistics)
+        yield from _blocks(problem, s, out, statistics, reader)
     finally:
         close_solver(s.handles)
 
 
-def _blocks(problem: Problem, s: Arrays, out: Output, statistics: Statistics) -> Iterator[Block]:
+def _blocks(
+    problem: Problem, s: Arrays, out: Output, statistics: Statistics, reader: SampleReader | None
+) -> Iterator[Block]:
     """Run with an open solver, block by block."""
     m = problem.model
     driver, elastic = m.work.driver, bool(m.scene.nodes > 0)
@@ -270,7 +286,8 @@ def _blocks(problem: Problem, s: Arrays, out: Output, statistics: Statistics) ->
     beyond, budget = False, 1 if costly else FIRST_STEPS
     while driver.done == 0 and driver.error == 0 and not beyond:
         started = time.monotonic()
-        advance(problem.located.place, s, out, budget)
+        room = out if reader is None else out.before(m, reader.sample)
+        advance(problem.located.place, s, room, budget)
         budget = _next_budget(budget, time.monotonic() - started)
         update_statistics(statistics, m.state.progress)
         statistics.ending = ending_of_flag(int(driver.error), elastic or m.scene.population.flanks > 0)
@@ -281,9 +298,22 @@ def _blocks(problem: Problem, s: Arrays, out: Output, statistics: Statistics) ->
             m.state.progress.restarts += 1
             beyond = True
         reached = float(s.clock[0])
+        if reader is not None and driver.pending > 0 and m.state.progress.next_sample == reader.sample:
+            _read(problem, s, reader)
         yield out.block(
             m,
             reached,
             problem.checkpoint(reached, s.y) if driver.pending < 0 or driver.done != 0 else None,
             problem.kept(reached, s.y, s.yp) if driver.pending <= 0 else (None, None),
         )
+
+
+def _read(problem: Problem, s: Arrays, reader: SampleReader) -> None:
+    """Have the model read at the sample that the step waits with."""
+    place, due = problem.located.place, float(sample_time(problem.model, reader.sample))
+
+    def state() -> Floats:
+        state_at_sample(place, s, due)
+        return s.dky
+
+    reader.read(problem, due, state)

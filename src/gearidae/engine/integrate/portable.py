@@ -37,6 +37,7 @@ from gearidae.engine.integrate.driver import (
     Block,
     Ending,
     Output,
+    SampleReader,
     ending_of_flag,
     sample_time,
     update_statistics,
@@ -59,7 +60,12 @@ _CROWDED = 0.3  # of the way to be interpolated: the least distance of the third
 
 
 def run(
-    problem: Problem, rtol: float, total: int, statistics: Statistics, resume: Floats | None = None
+    problem: Problem,
+    rtol: float,
+    total: int,
+    statistics: Statistics,
+    resume: Floats | None = None,
+    reader: SampleReader | None = None,
 ) -> Iterator[Block]:
     """Run a problem, block by block; see `gearidae.engine.integrate.native.run`."""
     m = problem.prepare(rtol, total)
@@ -77,6 +83,8 @@ def run(
     if (
         total > 0 and progress.next_sample == 0
     ):  # the state there, whatever rounding has made of the sample's time
+        if reader is not None and reader.sample == 0:
+            reader.read(problem, float(driver.time), y.copy)
         observe_at(solver.located.place, float(driver.time), y, out.rows[0])
         driver.rows = progress.next_sample = 1
     solver.start(y)
@@ -87,7 +95,7 @@ def run(
         if driver.error != 0:  # the data belong to the last accepted time
             break
         y, yp = reached
-        yield from _samples(solver, out, y)
+        yield from _samples(problem, solver, out, y, reader)
         if not has_room(driver.events, driver.passages, out):
             yield out.block(m, driver.time)
         afresh = finish_step_at(solver.located.place, y, yp, between, flag, out)
@@ -126,12 +134,16 @@ def _ready(problem: Problem, m: Model, out: Output, statistics: Statistics, y: F
     return out.block(m, reached, problem.checkpoint(reached, y), problem.kept(reached, y, yp))
 
 
-def _samples(solver: _Solver, out: Output, y: Floats) -> Iterator[Block]:
+def _samples(
+    problem: Problem, solver: _Solver, out: Output, y: Floats, reader: SampleReader | None
+) -> Iterator[Block]:
     """Write the samples up to the time reached; hands out full blocks on the way."""
     m, trail = solver.m, solver.trail
     driver, progress = m.work.driver, m.state.progress
     while (due := sample_time(m, int(progress.next_sample))) <= driver.time:
         state = y if due == driver.time else trail.at(due)
+        if reader is not None and progress.next_sample == reader.sample:
+            reader.read(problem, due, state.copy)
         observe_at(solver.located.place, due, state, out.rows[driver.rows])
         progress.next_sample += 1
         driver.rows += 1

@@ -17,7 +17,7 @@ from gearidae.engine.events.events import ROOT, STOP
 from gearidae.engine.events.rest_search import rest_until
 from gearidae.engine.events.schedule_knots import next_stop
 from gearidae.engine.model.record_types import AT_REST, FREE, HELD_GEAR
-from gearidae.engine.model.state import DRIVE, GEARS, PHASE, Floats, Model, U, V, W
+from gearidae.engine.model.state import DRIVE, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.pairs.tooth_pairs import static_error
@@ -30,7 +30,7 @@ _PASSES: Final = 2
 @compiled(inline=True)
 def comes_to_rest(m: Model, t: float, y: Floats) -> bool:
     """Whether gears that have moved up to an accepted time are at rest from there on."""
-    if m.scene.kind != GEARS or y[W] != 0.0:
+    if m.state.hold == FREE or y[W] != 0.0:
         return False
     if abs(y[V]) * m.rows[m.scene.error_weights_at + V] >= 1.0 or m.work.driver.resting != 0:
         return False
@@ -40,7 +40,7 @@ def comes_to_rest(m: Model, t: float, y: Floats) -> bool:
 @compiled_once(SOLVER)
 def is_at_rest(m: Model, t: float, y: Floats) -> bool:
     """Whether nothing moves, or nothing by more than a tolerance."""
-    if m.scene.kind != GEARS or y[W] != 0.0:
+    if y[W] != 0.0:
         return False
     if m.state.hold == AT_REST:
         return y[V] == 0.0

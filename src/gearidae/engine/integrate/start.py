@@ -9,7 +9,7 @@ import numpy as np
 from gearidae.compiled import compiled
 from gearidae.engine.elastic.nodes import node_rates
 from gearidae.engine.events.mesh_marks import relief_step
-from gearidae.engine.model.state import EMPTY, GEARS, PHASE, ROLLER, Floats, Model, V, W
+from gearidae.engine.model.state import EMPTY, PHASE, Floats, Model, V, W
 from gearidae.engine.motion.residual import residual
 from gearidae.engine.pairs.tooth_pairs import in_flight, nearest_gap
 
@@ -28,8 +28,7 @@ def set_rates(m: Model, t: float, y: Floats, yp: Floats) -> None:
     residual(m, t, y, yp, out)
     for i in range(y.size):
         yp[i] = -out[i]
-    if m.scene.kind == GEARS:
-        yp[V] -= yp[W]
+    yp[V] -= yp[W]
     if m.scene.nodes > 0:
         node_rates(m, yp)
 
@@ -65,9 +64,9 @@ def first_step(m: Model, t: float, y: Floats, yp: Floats, longest: float) -> flo
         change = abs(later[W] - yp[W]) / probe
         if change > 0.0:
             step = min(step, 0.25 * abs(yp[W]) / change)
-    if m.scene.kind == GEARS and not in_flight(m):
+    if not in_flight(m):
         step = min(step, FIRST_RELIEF * relief_step(m, y))
-    for coast in range(1 if m.scene.kind == ROLLER else 2):
+    for coast in range(2):
         # free flight has no curvature, and the flank at its end comes without warning
         apart = nearest_gap(m, coast, y) - m.scene.cutoff
         if apart > 0.0:
@@ -78,7 +77,7 @@ def first_step(m: Model, t: float, y: Floats, yp: Floats, longest: float) -> flo
 @compiled
 def rebase(m: Model, y: Floats) -> None:
     """Move whole pitches from the phase to ``m.state.turns``, with all that is counted along."""
-    if m.scene.kind == ROLLER or abs(y[PHASE]) < PHASE_HIGH:
+    if abs(y[PHASE]) < PHASE_HIGH:
         return
     slots = m.scene.slots  # a multiple of the slots leaves every pair in its own
     shift = slots * math.floor(y[PHASE] / slots)

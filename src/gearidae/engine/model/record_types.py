@@ -53,11 +53,11 @@ AT_REST: Final = 4
 """What friction holds: nothing; the sliding of one pair, which rolls; the gear; the pinion; or both gears."""
 
 # -- the state vector ------------------------------------------------------------------------------------------------
-U: Final = 0  # dynamic transmission error (a roller's height) / sigma
+U: Final = 0  # dynamic transmission error (a roller's height with the other sign) / sigma
 V: Final = 1  # its rate
 PHASE: Final = 2  # gear's turn in base pitches, less the whole ones in `STATE`
 W: Final = 3  # gear's surface velocity at the base circle
-MOTION: Final = 4  # states of a motion at most
+MOTION: Final = 4  # states of a motion
 # then, for an elastic contact, the deflection of both bodies / sigma at every node of every history's pair
 
 

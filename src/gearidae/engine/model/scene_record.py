@@ -124,6 +124,7 @@ FOLLOW: Final = record_type(  # 1 for each follower of the run that is wanted
     ("extremes", INT),  # extremes of the run
     ("exposures", INT),  # exposures of the flanks
     ("passages", INT),  # table of passages
+    ("gear", INT),  # extremes of the gear's speed, and where it stands
 )
 
 _PER_SPEED: Final = Unit("F tau/sigma", "N s m-1", force=1, length=-1, time=1)
@@ -136,7 +137,7 @@ KEYED: Final = {
 
 SCENE: Final = record_type(
     ("follow", FOLLOW),
-    ("kind", INT),  # GEARS or ROLLER
+    ("kind", INT),  # GEARS or ROLLER: what is recorded
     ("length_unit", REAL),  # sigma [m]
     ("time_unit", REAL),  # tau [s]
     ("force_unit", REAL),  # F [N]
@@ -145,15 +146,20 @@ SCENE: Final = record_type(
     ("gear_radius", REAL),  # base radius R2 [m]
     ("pinion_radius", REAL),  # base radius R1 [m]
     ("pinion_teeth", REAL),  # [1]
-    ("pinion_inverse_mass", REAL),  # R1^2 tau^2 F / (I1 sigma): acceleration per force [1]
-    ("gear_inverse_mass", REAL),  # R2^2 tau^2 F / (I2 sigma); of a roller tau^2 F / (m sigma) [1]
-    ("half_backlash", REAL),  # [sigma]
+    ("pinion_inverse_mass", REAL),  # R1^2 tau^2 F / (I1 sigma): acceleration per force; 1 of a roller [1]
+    ("gear_inverse_mass", REAL),  # R2^2 tau^2 F / (I2 sigma); 0 where the gear is held [1]
+    (
+        "clearance",
+        REAL,
+        (2,),
+    ),  # gap on the path at u = 0, of each flank; infinite where it meets none [sigma]
     ("phase_rate", REAL),  # sigma / pb: rate of the phase per surface velocity of the gear [1]
     ("contact_ratio", REAL),  # path of contact [pb]
     ("coast_phase", REAL),  # 2 approach / pb + 1/2: mirrors the coast flank about the pitch point [pb]
     ("relief_curvature", REAL),  # pb^2 / (rho sigma): curvature of the tip relief [sigma/pb^2]
     ("relief_slope", REAL),  # pb / rho [1/pb]
     ("reach", REAL),  # how far outside the path a pair may still touch [pb]
+    ("marks", INT),  # kinds of marks of the mesh in each pitch; 0 where the gear is held [1]
     ("start_radius", REAL),  # pinion's radius of curvature where contact begins [pb]
     ("sum_curvature", REAL),  # 1 over the sum of both radii of curvature [1/pb]
     ("radius_force", INT),  # 1 if a force pays for the changing contact length

@@ -1,6 +1,6 @@
 """The Jacobian of an elastic contact and its solution by blocks.
 
-The nodes of one pair couple to the motion only through its gap and its force. With m states of motion x, deflections
+The nodes of one pair couple to the motion only through its gap and its force. With the states of motion x, deflections
 z of each pair, g its gap and W its force, Newton's equations read
 
     A x + sum over pairs of beta (rho . z) = b,        D z - c (gamma . x) = b_z        (for each pair)
@@ -24,15 +24,14 @@ from gearidae.compiled import compiled
 from gearidae.engine.elastic.nodes import influence, stiffness_matrix
 from gearidae.engine.elastic.rows import node_weights
 from gearidae.engine.friction.pairs import direction, levers
-from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, U, V, W
+from gearidae.engine.model.state import MOTION, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.residual import motion_slopes, write_jacobian
 from gearidae.engine.pairs.tooth_pairs import contact_length, flank_of_history
 
-_MOTION: Final = 0  # sizes: states of motion, nodes, blocks
-_NODES: Final = 1
-_BLOCKS: Final = 2
-_SMALL: Final = 3  # A, up to 4 x 4, row by row
-_FIRST: Final = 19
+_NODES: Final = 0  # sizes: nodes, blocks
+_BLOCKS: Final = 1
+_SMALL: Final = 2  # A, row by row
+_FIRST: Final = _SMALL + MOTION * MOTION
 # a block: whether it is loaded, beta and gamma, then rho, c and D (rho and c times the inverse once factorised)
 _BETA: Final = 1
 _GAMMA: Final = 5
@@ -49,7 +48,7 @@ def store_size(m: Model) -> int:
 @compiled
 def unknowns(store: Floats) -> int:
     """Unknowns of the equations in a store."""
-    return int(store[_MOTION]) + int(store[_NODES]) * int(store[_BLOCKS])
+    return MOTION + int(store[_NODES]) * int(store[_BLOCKS])
 
 
 @compiled(makes_arrays=True)
@@ -65,25 +64,20 @@ def assemble(m: Model, t: float, cj: float, y: Floats, store: Floats) -> None:
     store : ndarray, shape (store_size(m),)
         Filled in.
     """
-    roller = m.scene.kind == ROLLER
-    motion = 2 if roller else 4
     n = m.scene.nodes
-    store[_MOTION], store[_NODES], store[_BLOCKS] = motion, n, m.scene.histories
-    small = np.empty(motion * motion)
+    store[_NODES], store[_BLOCKS] = n, m.scene.histories
+    small = np.empty(MOTION * MOTION)
     slopes = motion_slopes(m, t, y)
     write_jacobian(m, cj, slopes, small)
-    for i in range(motion):
-        for j in range(motion):
-            store[_SMALL + motion * i + j] = small[i + motion * j]
+    for i in range(MOTION):
+        for j in range(MOTION):
+            store[_SMALL + MOTION * i + j] = small[i + MOTION * j]
     size = _RHO + 2 * n + n * n
     for block in range(m.scene.histories):
         store[_FIRST + size * block] = 0.0
     for i in range(m.work.notes.count):
         noted = m.work.notes.pair[i]
         start = _assemble_pair(m, noted.history, contact_length(m, noted.position), store)
-        if roller:
-            store[start + _BETA + V], store[start + _GAMMA + U] = -slopes.by_pinion, 1.0
-            continue
         sign = 1.0 - 2.0 * flank_of_history(m, noted.history)
         on_pinion, on_gear = sign, sign * (1.0 + noted.relief)
         if m.scene.friction.flanks != 0 and noted.contact != 0.0:
@@ -174,9 +168,9 @@ def factorise(store: Floats) -> int:
         0 if all went well; 1 where a pair's D has a determinant that is not positive: the contact lies beyond a fold
         of its static curve.
     """
-    motion, n = int(store[_MOTION]), int(store[_NODES])
+    n = int(store[_NODES])
     size = _RHO + 2 * n + n * n
-    small = store[_SMALL : _SMALL + motion * motion].reshape(motion, motion)
+    small = store[_SMALL : _SMALL + MOTION * MOTION].reshape(MOTION, MOTION)
     work = np.empty(n)
     for number in range(int(store[_BLOCKS])):
         start = _FIRST + size * number
@@ -200,8 +194,8 @@ def factorise(store: Floats) -> int:
             for i in range(n):
                 work[i] += block[k, i] * c[k]
         c[:] = work
-        for i in range(motion):
-            for j in range(motion):
+        for i in range(MOTION):
+            for j in range(MOTION):
                 small[i, j] += store[start + _BETA + i] * moved * store[start + _GAMMA + j]
     return 0 if _invert(small) != 0.0 else 1
 
@@ -217,34 +211,34 @@ def solve_blocks(store: Floats, b: Floats, x: Floats) -> None:
     b, x : ndarray
         Right-hand side and solution; may be the same array.
     """
-    motion, n = int(store[_MOTION]), int(store[_NODES])
+    n = int(store[_NODES])
     size = _RHO + 2 * n + n * n
     blocks = int(store[_BLOCKS])
-    right = np.zeros(4)
-    for i in range(motion):
+    right = np.empty(MOTION)
+    for i in range(MOTION):
         right[i] = b[i]
     for number in range(blocks):
         start = _FIRST + size * number
         if store[start] != 0.0:
             force = 0.0
             for i in range(n):
-                force += store[start + _RHO + i] * b[motion + n * number + i]
-            for i in range(motion):
+                force += store[start + _RHO + i] * b[MOTION + n * number + i]
+            for i in range(MOTION):
                 right[i] -= store[start + _BETA + i] * force
-    for i in range(motion):
+    for i in range(MOTION):
         total = 0.0
-        for j in range(motion):
-            total += store[_SMALL + motion * i + j] * right[j]
+        for j in range(MOTION):
+            total += store[_SMALL + MOTION * i + j] * right[j]
         x[i] = total
     work = np.empty(n)
     for number in range(blocks):
-        start, first = _FIRST + size * number, motion + n * number
+        start, first = _FIRST + size * number, MOTION + n * number
         if store[start] == 0.0:
             for i in range(n):
                 x[first + i] = b[first + i]
             continue
         gap = 0.0
-        for i in range(motion):
+        for i in range(MOTION):
             gap += store[start + _GAMMA + i] * x[i]
         block = store[start + _RHO + 2 * n : start + size].reshape(n, n)
         for i in range(n):
@@ -261,19 +255,19 @@ def solve_blocks(store: Floats, b: Floats, x: Floats) -> None:
 def dense_jacobian(m: Model, t: float, cj: float, y: Floats, store: Floats, out: Floats) -> None:
     """The same Jacobian as a full matrix, row by row, for solvers that know no blocks; `store` is overwritten."""
     assemble(m, t, cj, y, store)
-    motion, n = int(store[_MOTION]), int(store[_NODES])
+    n = int(store[_NODES])
     size = _RHO + 2 * n + n * n
     out[:] = 0.0
-    for i in range(motion):
-        for j in range(motion):
-            out[i, j] = store[_SMALL + motion * i + j]
+    for i in range(MOTION):
+        for j in range(MOTION):
+            out[i, j] = store[_SMALL + MOTION * i + j]
     for number in range(int(store[_BLOCKS])):
-        start, first = _FIRST + size * number, motion + n * number
+        start, first = _FIRST + size * number, MOTION + n * number
         for i in range(n):
             out[first + i, first + i] = 1.0
             if store[start] == 0.0:
                 continue
-            for j in range(motion):
+            for j in range(MOTION):
                 out[j, first + i] = store[start + _BETA + j] * store[start + _RHO + i]
                 out[first + i, j] = -store[start + _RHO + n + i] * store[start + _GAMMA + j]
             for k in range(n):

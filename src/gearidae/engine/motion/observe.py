@@ -38,8 +38,8 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
     mesh = forces_at(m, t, y)
     force = mesh.force + m.scene.damping * v
     if m.scene.kind != GEARS:
-        row[ROLLER.height] = u * length
-        row[ROLLER.speed] = v * speed
+        row[ROLLER.height] = -u * length
+        row[ROLLER.speed] = -v * speed
         row[ROLLER.force] = force * m.scene.force_unit
         if m.scene.population.flanks != 0:
             row[ROLLER_POPULATION.asperities_in_contact] = asperities_joined(m)[0]

@@ -98,7 +98,7 @@ def force_of_pair(m: Model, t: float, y: Floats, pair: PairState, settling: bool
 
 @compiled(inline=True)
 def mesh_forces(m: Model, t: float, y: Floats, settling: bool) -> MeshForces:
-    """Sum the forces of all pairs, or that of the roller, with their slopes; the state of the run stays as it is.
+    """Sum the forces of all pairs, with their slopes; the state of the run stays as it is.
 
     Parameters
     ----------

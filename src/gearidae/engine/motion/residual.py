@@ -8,15 +8,16 @@ surface velocity w,
 
 with F the sum of the pairs' forces along the line of action and Fs what tip relief adds at the gear (Teodorescu et al.
 2009, Eqs. 1-6, with the tip relief doing work consistently) and, with ``mesh.radius_force``, the changing radius. A
-gear held by dry resistance has w' = 0. A roller has the states z and its rate, z' - v = 0, v' - a2 F = 0. An elastic
-contact adds the deflections at its nodes, which have no rates: the system is then a DAE of index 1.
+gear held by dry resistance has w' = 0. A roller at the height z is a pinion that meets one flank of a gear that is held
+for good, u = -z and a2 = 0. An elastic contact adds the deflections at its nodes, which have no rates: the system is
+then a DAE of index 1.
 """
 
 from __future__ import annotations
 
 from gearidae.compiled import compiled
 from gearidae.engine.elastic.nodes import node_residual
-from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, U, V, W
+from gearidae.engine.model.state import PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.pair_forces import mesh_forces
 from gearidae.engine.motion.shafts import (
     AccelerationSlopes,
@@ -36,9 +37,6 @@ def motion(m: Model, t: float, y: Floats, yp: Floats, out: Floats, settling: boo
     """
     mesh = mesh_forces(m, t, y, settling)
     out[U] = yp[U] - y[V]
-    if m.scene.kind == ROLLER:
-        out[V] = yp[V] - m.scene.gear_inverse_mass * mesh.force
-        return mesh
     s = shafts_at(m, t, y, mesh)
     pinion, gear = accelerations(m, t, y, s)
     out[V] = yp[V] + yp[W] - (1.0 - s.e1) * pinion + s.e2 * s.turn * s.turn
@@ -54,7 +52,7 @@ def residual(m: Model, t: float, y: Floats, yp: Floats, out: Floats) -> None:
     ----------
     t : float
         Time over tau.
-    y, yp, out : ndarray, shape (4,) or (2,), and the nodes
+    y, yp, out : ndarray, shape (4,) and the nodes
         State, its rate, and where the residual goes.
     """
     motion(m, t, y, yp, out, False)
@@ -81,7 +79,7 @@ def jacobian(m: Model, t: float, cj: float, y: Floats, out: Floats) -> None:
         Time over tau, and IDA's leading coefficient.
     y : ndarray
         State; the deflections of an elastic contact after the motion.
-    out : ndarray, shape (16,) or (4,)
+    out : ndarray, shape (16,)
     """
     write_jacobian(m, cj, motion_slopes(m, t, y), out)
 
@@ -89,10 +87,6 @@ def jacobian(m: Model, t: float, cj: float, y: Floats, out: Floats) -> None:
 @compiled
 def write_jacobian(m: Model, cj: float, s: AccelerationSlopes, out: Floats) -> None:
     """Write the same with given slopes of the accelerations."""
-    if m.scene.kind == ROLLER:
-        out[0], out[1] = cj, -s.pinion_u
-        out[2], out[3] = -1.0, cj - s.pinion_v
-        return
     out[:16] = 0.0
     out[0], out[1], out[3] = cj, -s.pinion_u, -s.gear_u
     out[4], out[5], out[7] = -1.0, cj - s.pinion_v, -s.gear_v

@@ -7,7 +7,7 @@ import math
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.elastic.rows import first_unknown
-from gearidae.engine.model.state import ROLLER, Floats, Model, U
+from gearidae.engine.model.state import COAST, DRIVE, Floats, Model, U
 from gearidae.engine.pairs.tooth_pairs import all_pairs, gap_and_rate, history_of, pair_at
 
 
@@ -33,5 +33,5 @@ def separation(m: Model, y: Floats) -> float:
 
 @compiled
 def rigid_separation(m: Model, u: float) -> float:
-    """Distance of a roller, or of the nearer flank of pairs on the path of contact."""
-    return u if m.scene.kind == ROLLER else m.scene.half_backlash - abs(u)
+    """Distance of the nearer flank of pairs on the path of contact."""
+    return min(m.scene.clearance[DRIVE] - u, m.scene.clearance[COAST] + u)

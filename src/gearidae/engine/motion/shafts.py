@@ -17,7 +17,7 @@ from gearidae.engine.friction.forces import (
 )
 from gearidae.engine.friction.pairs import direction, levers, set_limits
 from gearidae.engine.model.record_types import AT_REST, FREE, HELD_GEAR, HELD_PAIR
-from gearidae.engine.model.state import DRIVE, PHASE, ROLLER, Floats, Model, U, V, W
+from gearidae.engine.model.state import DRIVE, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
 from gearidae.engine.pairs.pair_force import MeshForces
 from gearidae.engine.pairs.shaft_angle import torque_angle
@@ -94,8 +94,6 @@ def accelerations(m: Model, t: float, y: Floats, s: Shafts) -> tuple[float, floa
 class AccelerationSlopes(NamedTuple):
     """Partial derivatives of the accelerations of both base circles in u, v, phase and w, and in forces on them.
 
-    Of a roller, those of its own acceleration are the pinion's.
-
     Attributes
     ----------
     by_pinion, by_both, by_gear : float
@@ -135,15 +133,10 @@ def acceleration_slopes(m: Model, y: Floats, mesh: MeshForces) -> AccelerationSl
     of a torque in angle and speed: a shaft takes many steps to follow a mild law, and each iteration reduces what is
     left by the ratio of a step to that time. A drive that holds a speed is not mild, and its slope is there.
     """
-    a2 = m.scene.gear_inverse_mass
-    if m.scene.kind == ROLLER:
-        return AccelerationSlopes(
-            -a2 * mesh.force_u, -a2 * mesh.force_v, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, a2, 0.0, 0.0
-        )
     f = Slopes(
         m.scene.pinion_inverse_mass,
         0.0,
-        a2 if m.state.hold == FREE else 0.0,
+        m.scene.gear_inverse_mass if m.state.hold == FREE else 0.0,
         0.0,
         0.0,
         0.0,

@@ -8,7 +8,7 @@ import numpy as np
 
 from gearidae.engine.elastic.nodes import influence, node_force, stiffness_matrix
 from gearidae.engine.elastic.rows import GAP, PRESSURE, first_unknown, profile_of, row_of
-from gearidae.engine.model.state import EMPTY, PHASE, ROLLER, Floats, Model
+from gearidae.engine.model.state import EMPTY, PHASE, Floats, Model
 from gearidae.engine.motion.residual import residual
 from gearidae.engine.pairs.coverage import path_position
 from gearidae.engine.pairs.tooth_pairs import contact_length, flank_of_history
@@ -93,8 +93,7 @@ def fold_gap(m: Model, t: float, y: Floats) -> float:
         gap, direction = float(h.gap), float(h.direction)
         if h.pair == EMPTY or gap >= m.scene.cutoff:
             continue
-        phase = 0.0 if m.scene.kind == ROLLER else float(y[PHASE])
-        length = contact_length(m, path_position(m, flank_of_history(m, k), int(h.pair), phase))
+        length = contact_length(m, path_position(m, flank_of_history(m, k), int(h.pair), float(y[PHASE])))
         kept = row_of(m, k, GAP) - gap - profile
         here = _follow(m, t, k, length, kept, gap)
         if here is not None and np.max(np.abs(here - kept)) > _ASIDE:

@@ -2,8 +2,8 @@
 
 A pair is known by its number i. On the drive flank it stands ``phase - i`` pitches along the path of contact, on the
 coast flank, mirrored about the pitch point and half a pitch later, ``coast_phase + i - phase``. A roller is pair 0 of
-the drive flank. All functions take the records of `gearidae.engine.model.state` and the state's numbers, and are
-compiled.
+the drive flank of a gear that is held, at one place of a path of contact without length. All functions take the
+records of `gearidae.engine.model.state` and the state's numbers, and are compiled.
 
 Gaps and joined heights are those of the pair. A material whose gap is wider by an offset has both wider by it where its
 tables are read, and nowhere else.
@@ -30,7 +30,6 @@ from gearidae.engine.model.state import (
     DRIVE,
     MATERIALS,
     PHASE,
-    ROLLER,
     Floats,
     Model,
     U,
@@ -65,9 +64,6 @@ class Reach(NamedTuple):
 def _reach(m: Model, phase: float, drive: bool, coast: bool) -> Reach:
     """Pairs within reach of the given flanks."""
     s = m.scene
-    if s.kind == ROLLER:
-        count = 1 if drive else 0
-        return Reach(0, count, 0, count)
     drive_first = coast_first = drive_count = coast_count = 0
     if drive:
         drive_first = math.ceil(phase - s.contact_ratio - s.reach)
@@ -79,14 +75,9 @@ def _reach(m: Model, phase: float, drive: bool, coast: bool) -> Reach:
 
 
 @compiled(inline=True)
-def _phase(m: Model, y: Floats) -> float:
-    return 0.0 if m.scene.kind == ROLLER else y[PHASE]
-
-
-@compiled(inline=True)
 def all_pairs(m: Model, y: Floats) -> Reach:
     """Pairs within reach along the path of contact, however wide their gaps."""
-    return _reach(m, _phase(m, y), True, True)
+    return _reach(m, y[PHASE], True, True)
 
 
 @compiled(inline=True)
@@ -94,13 +85,13 @@ def pairs_touching(m: Model, y: Floats) -> Reach:
     """Pairs of the flanks whose nearest gap is within the cut-off: tip relief only opens a gap."""
     cutoff = m.scene.cutoff
     drive, coast = nearest_gap(m, DRIVE, y) < cutoff, nearest_gap(m, COAST, y) < cutoff
-    return _reach(m, _phase(m, y), drive, coast)
+    return _reach(m, y[PHASE], drive, coast)
 
 
 @compiled(inline=True)
 def pairs_near(m: Model, y: Floats) -> Reach:
     """Pairs of the flanks that were near at the last accepted time."""
-    return _reach(m, _phase(m, y), m.state.near[DRIVE] != 0, m.state.near[COAST] != 0)
+    return _reach(m, y[PHASE], m.state.near[DRIVE] != 0, m.state.near[COAST] != 0)
 
 
 @compiled(inline=True)
@@ -109,7 +100,7 @@ def pairs_felt(m: Model, y: Floats) -> Reach:
     cutoff = m.scene.cutoff
     drive = m.state.near[DRIVE] != 0 or nearest_gap(m, DRIVE, y) < cutoff
     coast = m.state.near[COAST] != 0 or nearest_gap(m, COAST, y) < cutoff
-    return _reach(m, _phase(m, y), drive, coast)
+    return _reach(m, y[PHASE], drive, coast)
 
 
 @compiled(inline=True)
@@ -208,11 +199,9 @@ name_type(PairState(0, 0, 0, True, 0.0, 0.0, 0.0, 0.0, 0.0, True), "PairState")
 
 @compiled(inline=True)
 def pair_state(m: Model, coast: int, number: int, y: Floats) -> PairState:
-    """Return a pair, or the roller, at a state."""
+    """Return a pair at a state."""
     k = history_of(m, coast, number)
     known = m.state.history[k].pair == number
-    if m.scene.kind == ROLLER:
-        return PairState(coast, number, k, known, y[U], y[V], 0.0, 0.0, 0.0, False)
     gap, rate, slope, inside = pair_gap(m, coast, number, y[U], y[V], y[PHASE], y[W])
     moves = 0.0 < inside < m.scene.contact_ratio
     place_rate = (1.0 - 2.0 * coast) * m.scene.phase_rate * y[W] if moves else 0.0
@@ -229,7 +218,7 @@ def pair_gap(
     inside = min(max(along, 0.0), s.contact_ratio)
     outside = along - inside
     toward = -v if not coast else v
-    gap = s.half_backlash + (u if coast else -u)
+    gap = s.clearance[coast] + (u if coast else -u)
     if outside == 0.0:
         return gap, toward, 0.0, inside
     slope = s.relief_slope * outside
@@ -240,9 +229,7 @@ def pair_gap(
 
 @compiled
 def gap_and_rate(m: Model, coast: int, pair: int, y: Floats) -> tuple[float, float]:
-    """Gap and gap rate of a pair, or of the roller."""
-    if m.scene.kind == ROLLER:
-        return y[U], y[V]
+    """Gap and gap rate of a pair."""
     gap, rate, _, _ = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
     return gap, rate
 
@@ -279,10 +266,8 @@ def contact_length(m: Model, inside: float) -> float:
 
 @compiled
 def nearest_gap(m: Model, coast: int, y: Floats) -> float:
-    """Gap of a pair on the path of contact, which no pair of this flank undercuts; a roller's height."""
-    if m.scene.kind == ROLLER:
-        return y[U]
-    return m.scene.half_backlash + (y[U] if coast else -y[U])
+    """Gap of a pair on the path of contact, which no pair of this flank undercuts."""
+    return m.scene.clearance[coast] + (y[U] if coast else -y[U])
 
 
 @compiled

@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from gearidae.compiled import compiled
-from gearidae.engine.model.state import Model
+from gearidae.engine.model.state import Floats, Model
 
 # columns of the candidates
 INDEX: Final = 0  # of the asperity among all,
@@ -44,6 +44,14 @@ def column(m: Model, k: int, field: int) -> np.uintp:
     """Place of a column of the k-th history's candidates among the rows."""
     own = m.scene.population
     return np.uintp(own.rows_at + (k * FIELDS + field) * own.capacity)
+
+
+def joined_candidates(m: Model, k: int) -> Floats:
+    """Return the columns of the joined candidates of the k-th history, shape (FIELDS, joined)."""
+    own = m.scene.population
+    start = own.rows_at + k * FIELDS * own.capacity
+    columns = m.rows[start : start + FIELDS * own.capacity].reshape(FIELDS, -1)
+    return columns[:, columns[JOINED, : m.work.contact[k].joined].astype(np.int64)]
 
 
 @compiled

@@ -15,7 +15,7 @@ import math
 from typing import NamedTuple
 
 from gearidae.compiled import compiled
-from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, W
+from gearidae.engine.model.state import PHASE, Floats, Model, W
 from gearidae.engine.pairs.tooth_pairs import PairState, flank_of_history, is_on_path, on_path, pair_state
 
 
@@ -40,14 +40,12 @@ class Spot(NamedTuple):
 
 @compiled(inline=True)
 def pair_now(m: Model, coast: int, number: int, y: Floats) -> PairState:
-    """Return a pair, or the roller, at a state.
+    """Return a pair at a state.
 
     The last two mesh marks tell whether it is on the path, so that a step that ends at a mark sees the side it comes
     from, beyond which its place is not clipped.
     """
     pair = pair_state(m, coast, number, y)
-    if m.scene.kind == ROLLER:
-        return pair
     if not is_on_path(m, coast, number):
         return on_path(pair, pair.place, 0.0, False)
     along = m.scene.coast_phase + number - y[PHASE] if coast else y[PHASE] - number
@@ -84,9 +82,7 @@ def spot_at(m: Model, place: float, moves: bool) -> Spot:
 
 @compiled
 def place_of_arc(m: Model, arc: float) -> float:
-    """Place along the path of contact, clipped to it, at which a pair touches at an arc; 0 of a roller."""
-    if m.scene.kind == ROLLER:
-        return 0.0
+    """Place along the path of contact, clipped to it, at which a pair touches at an arc."""
     along = math.sqrt(max(arc, 0.0) / m.scene.population.arc_scale) - m.scene.start_radius
     return min(max(along, 0.0), m.scene.contact_ratio)
 

@@ -13,6 +13,7 @@ from gearidae.engine.compiling import ELASTIC, EXPOSURES, FRICTION, POPULATION, 
 from gearidae.engine.elastic.layout import DEPTH_HIGH, ContactBounds
 from gearidae.engine.elastic.rows import scratch_size
 from gearidae.engine.events.histories import begin
+from gearidae.engine.events.mesh_marks import MARKS
 from gearidae.engine.followers.balance import open_balance
 from gearidae.engine.followers.exposures.bins import ROWS
 from gearidae.engine.model.scene_record import KEYED
@@ -21,6 +22,7 @@ from gearidae.engine.model.state import (
     GEARS,
     LOAD,
     MATERIALS,
+    MOTION,
     ROLLER,
     SCENE,
     SCHEDULES,
@@ -45,7 +47,7 @@ from gearidae.engine.torques.schedule import (
     segment_ends,
 )
 from gearidae.mesh.involute import Geometry
-from gearidae.scene import MATERIAL_NAMES, Drive, Load, Scene
+from gearidae.scene import MATERIAL_NAMES, Drive, GearScene, Load, RollerScene, Scene, require_gears
 from gearidae.scene.combinations import may_deflect
 from gearidae.scene.limits import check_reach, pairs_within_reach
 from gearidae.scene.sampled import columns_of
@@ -83,8 +85,10 @@ def make_problem(
         If the scene is beyond what the engine can do.
     """
     make_part_ready(SOLVER)
-    build = _gear_problem if scene.roller is None else _roller_problem
-    problem = build(scene, nodes, start)
+    if isinstance(scene, RollerScene):
+        problem = _roller_problem(scene, nodes, start)
+    else:
+        problem = _gear_problem(require_gears(scene), nodes, start)
     problem.columns = columns or problem.columns
     problem.method = scene.run.method
     problem.digest = digest or scene_digest(json.dumps(scene.to_dict(), sort_keys=True, default=str))
@@ -103,19 +107,14 @@ def make_problem(
     return problem
 
 
-def _gear_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
+def _gear_problem(scene: GearScene, nodes: Nodes | None, begin: Start) -> Problem:
     gears, mesh, start, drive, load = scene.gears, scene.mesh, scene.initial, scene.drive, scene.load
-    assert gears
-    assert mesh
-    assert start
-    assert drive
-    assert load
     geometry, sigma = scene.geometry, scene.surface.roughness
     s, tables = np.zeros(1, SCENE)[0], Tables()
     _set_units(s, scene)
     speed = sigma / float(s.time_unit)
     _set_geometry(s, geometry, mesh.tip_relief_radius)
-    s.half_backlash = 0.5 * mesh.backlash / sigma
+    s.clearance, s.marks = 0.5 * mesh.backlash / sigma, MARKS
     s.bins = scene.run.exposures
     s.bins_per_pitch = scene.run.exposures / float(s.contact_ratio)
     s.pitch_point = 0.5 * (float(s.coast_phase) - 0.5)
@@ -137,7 +136,7 @@ def _gear_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
         add_contact(s, tables, scene, gears.face_width, unit_length, widest)
     add_attraction(s, tables, scene, gears.face_width, unit_length, widest)
     s.reach = math.sqrt(2.0 * (float(s.cutoff) - GAP_LOW) / float(s.relief_curvature))
-    add_friction(s, scene, gears, geometry)
+    add_friction(s, scene)
     _set_slots(s, scene)
     add_torques(s, tables, scene, begin.time)
     set_stop(s, scene, start.mesh_phase if begin.place is None else begin.place)
@@ -156,7 +155,7 @@ def _gear_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
     whole, phase = divmod(start.mesh_phase, 1.0)  # the solver's phase stays small: whole pitches are turns
     outside = phase - min(phase, float(s.contact_ratio))
     relief = float(0.5 * s.relief_curvature * outside**2)
-    u = float(s.half_backlash) + relief - start.gap / sigma
+    u = float(s.clearance[DRIVE]) + relief - start.gap / sigma
     w = start.gear_speed * geometry.base_radius_gear / speed
     model.state.turns, model.state.first_place = whole, start.mesh_phase
     model.state.first_lead = u + static_error(model, u, phase)[1]
@@ -168,15 +167,16 @@ def _gear_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
     return _begun(model, scene, [u, 0.0, phase, w], skipped)
 
 
-def _roller_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
+def _roller_problem(scene: RollerScene, nodes: Nodes | None, begin: Start) -> Problem:
     roller = scene.roller
-    assert roller is not None
     sigma = scene.surface.roughness
     speed = roller.speed if roller.speed != 0.0 else 1e3 * sigma / scene.run.duration
     s, tables = np.zeros(1, SCENE)[0], Tables()
     s.kind, s.length_unit = ROLLER, sigma
     s.time_unit, s.force_unit = sigma / abs(speed), roller.mass * speed**2 / sigma
-    s.gear_inverse_mass = s.start_radius = 1.0  # so that its contact has the length 1
+    # the gear is held: its pair stays at one place, where its contact has the length 1, of a path without length
+    s.pinion_inverse_mass = s.phase_rate = s.start_radius = 1.0
+    s.clearance, s.coast_phase = (0.0, math.inf), 0.25
     energy = 0.5 * roller.mass * roller.speed**2
     bounds = ContactBounds(roller.width, roller.radius, 1.0, 1.0, energy, energy, 0.0, roller.height / sigma)
     grid = choose_model(s, scene, bounds, nodes)
@@ -189,19 +189,18 @@ def _roller_problem(scene: Scene, nodes: Nodes | None, begin: Start) -> Problem:
     s.slots = s.histories = 1
     set_run(s, tables, scene, set(), begin.time)
     add_nodes(s, tables, grid)
-    model = _model(s, tables, [1.0, 1.0])
+    model = _model(s, tables, [1.0] * MOTION)
     model.state.slip = 1.0
-    start = [roller.height / sigma, -roller.speed * float(s.time_unit) / sigma]
+    start = [-roller.height / sigma, roller.speed * float(s.time_unit) / sigma, 0.0, 0.0]
     return _begun(model, scene, start, {})
 
 
 # -- constants -------------------------------------------------------------------------------------------------------
 
 
-def _set_units(s: Record, scene: Scene) -> None:
+def _set_units(s: Record, scene: GearScene) -> None:
     """Set the units of a gear pair and its inverse masses."""
     gears, geometry = scene.gears, scene.geometry
-    assert gears
     pinion_mass = gears.pinion_inertia / geometry.base_radius_pinion**2
     gear_mass = gears.gear_inertia / geometry.base_radius_gear**2
     mass = 1.0 / (1.0 / pinion_mass + 1.0 / gear_mass)
@@ -240,12 +239,9 @@ def _set_geometry(s: Record, geometry: Geometry, tip_relief_radius: float) -> No
     s.sum_curvature = pitch / (geometry.tangent_pinion + geometry.tangent_gear)
 
 
-def _gear_bounds(s: Record, scene: Scene) -> ContactBounds:
+def _gear_bounds(s: Record, scene: GearScene) -> ContactBounds:
     """Where the contacts of a gear pair take place."""
     gears, mesh, start = scene.gears, scene.mesh, scene.initial
-    assert gears
-    assert mesh
-    assert start
     # the radius is largest where both radii of curvature are the same, if that is on the path
     ratio = float(s.contact_ratio)
     equal = 0.5 / float(s.sum_curvature) - float(s.start_radius)
@@ -259,7 +255,7 @@ def _gear_bounds(s: Record, scene: Scene) -> ContactBounds:
     return ContactBounds(gears.face_width, pitch, min(lengths), max(lengths), energy, 0.0, force, nearest)
 
 
-def _set_slots(s: Record, scene: Scene) -> None:
+def _set_slots(s: Record, scene: GearScene) -> None:
     """Set how many histories each flank keeps: at least as many as pairs can be within reach."""
     check_reach(scene, float(s.cutoff))
     slots = 2 ** math.ceil(math.log2(pairs_within_reach(scene, float(s.cutoff))))
@@ -269,9 +265,8 @@ def _set_slots(s: Record, scene: Scene) -> None:
 # -- tables ----------------------------------------------------------------------------------------------------------
 
 
-def _add_static_error(s: Record, tables: Tables, scene: Scene) -> None:
+def _add_static_error(s: Record, tables: Tables, scene: GearScene) -> None:
     """Lay out the harmonics of the static transmission error."""
-    assert scene.mesh
     errors = scene.mesh.static_error
     numbers = [x for h in errors for x in (h.order, h.amplitude / float(s.length_unit), h.phase)]
     s.error_count, s.error_at = len(errors), tables.add(numbers)
@@ -289,8 +284,9 @@ def _add_static_error(s: Record, tables: Tables, scene: Scene) -> None:
 def _model(s: Record, tables: Tables, scale: list[float]) -> Model:
     """Put the model together, and note where its changing rows are; `scale` is that of the motion's states."""
     nodes, histories = int(s.nodes), int(s.histories)
-    s.states = len(scale) + nodes * histories
-    s.scale_at = tables.add(_scale(nodes, histories, scale))
+    s.states = MOTION + nodes * histories
+    moving = MOTION if s.gear_inverse_mass > 0.0 else 2
+    s.scale_at = tables.add(_scale(nodes, histories, scale, moving))
     rows = Tables()
     s.branches_at = rows.add(np.zeros(2 * MATERIALS * int(s.branch_length) * histories))
     s.node_rows_at = rows.add(np.zeros(int(s.node_row_length) * histories))
@@ -306,13 +302,13 @@ def _model(s: Record, tables: Tables, scale: list[float]) -> Model:
     return blank_model(s, tables.whole(), rows.size)
 
 
-def _scale(nodes: int, histories: int, motion: list[float]) -> Floats:
+def _scale(nodes: int, histories: int, motion: list[float], moving: int) -> Floats:
     """What an error of 1 means for each state.
 
-    The solver's norm is a mean over all states. Factors make it that of the motion alone, however many
-    nodes there are, with the nodes of one pair counting as one more state.
+    The solver's norm is a mean over all states. Factors make it that of the motion alone, of the states that are
+    `moving`, however many nodes there are, with the nodes of one pair counting as one more state.
     """
-    share = math.sqrt(len(motion) / (len(motion) + nodes * histories))
+    share = math.sqrt(moving / (len(motion) + nodes * histories))
     return np.concatenate(
         [share * np.array(motion), np.full(nodes * histories, share * math.sqrt(max(nodes, 1)))]
     )
@@ -335,7 +331,8 @@ def _begun(m: Model, scene: Scene, motion: list[float], skipped: dict[str, int])
         settle_nodes(m, 0.0, y)
     begin(m, 0.0, y)
     s.follow.balance, s.follow.extremes, s.follow.exposures = scene.run.balance, 1, s.bins > 0
-    s.follow.passages = int(scene.run.passages and s.kind == GEARS)
+    s.follow.gear = int(s.gear_inverse_mass > 0.0)
+    s.follow.passages = int(scene.run.passages and s.follow.gear)
     s.follow.friction = int(scene.run.balance and s.friction.rubs != 0)
     if s.follow.balance != 0:
         open_balance(m, y)

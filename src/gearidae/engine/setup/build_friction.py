@@ -15,12 +15,12 @@ from gearidae.engine.model.state import MATERIALS, Record
 from gearidae.engine.setup.tables import Tables
 from gearidae.mesh.involute import Geometry
 from gearidae.records.standing import Holding
-from gearidae.scene import MATERIAL_NAMES, Gears, Scene, Surface
+from gearidae.scene import MATERIAL_NAMES, GearScene, Scene, Surface
 from gearidae.scene.friction import friction_values, has_flank_friction
 from gearidae.scene.joints import has_pin, joints
 
 
-def add_friction(s: Record, scene: Scene, gears: Gears, geometry: Geometry) -> None:
+def add_friction(s: Record, scene: GearScene) -> None:
     """Set levers and hubs of a gear pair whose force laws have been laid out, and whether forces of pairs are noted.
 
     Parameters
@@ -37,13 +37,16 @@ def add_friction(s: Record, scene: Scene, gears: Gears, geometry: Geometry) -> N
     s.noting = int(scene.run.exposures > 0 or own.rubs != 0)
     if own.rubs == 0:
         return
-    _add_joints(s, scene, geometry)
+    _add_joints(s, scene, scene.geometry)
     own.pinion_lever = float(s.base_pitch) / float(s.pinion_radius)
     own.gear_lever = float(s.base_pitch) / float(s.gear_radius)
     own.radii = 1.0 / float(s.sum_curvature)
     own.pinion_bend = float(s.length_unit) / float(s.pinion_radius)
     own.gear_bend = float(s.length_unit) / float(s.gear_radius)
-    own.cosine, own.sine = math.cos(2.0 * gears.pressure_angle), math.sin(2.0 * gears.pressure_angle)
+    own.cosine, own.sine = (
+        math.cos(2.0 * scene.gears.pressure_angle),
+        math.sin(2.0 * scene.gears.pressure_angle),
+    )
     if own.flanks == 0:
         return
     own.shear = int(scene.contact.friction_law == "shear")
@@ -52,7 +55,7 @@ def add_friction(s: Record, scene: Scene, gears: Gears, geometry: Geometry) -> N
     own.even = there.pop() if len(there) == 1 and own.shear == 0 else 0.0
 
 
-def _add_joints(s: Record, scene: Scene, geometry: Geometry) -> None:
+def _add_joints(s: Record, scene: GearScene, geometry: Geometry) -> None:
     """Set what friction of the joints depends on."""
     own = s.friction
     pinion, gear, force = geometry.base_radius_pinion, geometry.base_radius_gear, float(s.force_unit)
@@ -70,7 +73,6 @@ def _add_joints(s: Record, scene: Scene, geometry: Geometry) -> None:
     own.pinion_rubs = int(own.pinion_hub > 0.0 or own.pinion_constant > 0.0 or own.pin > 0.0)
     own.gear_rubs = int(own.gear_hub > 0.0 or own.gear_constant > 0.0)
     if own.joints != 0 and has_pin(scene):
-        assert scene.drive is not None
         angle = geometry.pressure_angle + scene.drive.orientation
         own.forced, own.pin_cosine, own.pin_sine = 1, math.cos(angle) / force, math.sin(angle) / force
 

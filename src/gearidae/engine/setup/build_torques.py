@@ -11,7 +11,7 @@ from gearidae.engine.setup.tables import Tables
 from gearidae.engine.torques.harmonic import common_period, pack_harmonics
 from gearidae.engine.torques.law import largest_torque
 from gearidae.engine.torques.schedule import LEAST_CUBIC, fastest_schedule, pack_schedule
-from gearidae.scene import Drive, Knots, Load, Scene
+from gearidae.scene import Drive, GearScene, Knots, Load, Scene
 from gearidae.torques import torque_law
 
 STRIDE = 6  # accepted steps near contact that the energy balance integrates over at once
@@ -33,10 +33,8 @@ def _largest(shaft: Drive | Load, speed: float, duration: float) -> float:
     return steady + max((abs(value) for _, value in shaft.schedule), default=0.0)
 
 
-def _largest_held(scene: Scene, speed: float, ratio: float) -> float:
+def _largest_held(scene: GearScene, speed: float, ratio: float) -> float:
     """Bound of the torque [N m] that holds a speed: of the first difference, and to carry both gears along."""
-    assert scene.drive
-    assert scene.gears
     knots = np.array(scene.drive.speed_knots())
     inertia = scene.gears.pinion_inertia + scene.gears.gear_inertia / ratio**2
     slopes = np.abs(np.diff(knots[:, 1]) / np.diff(knots[:, 0]))
@@ -46,11 +44,8 @@ def _largest_held(scene: Scene, speed: float, ratio: float) -> float:
     )
 
 
-def reference_force(scene: Scene, mass: float) -> float:
+def reference_force(scene: GearScene, mass: float) -> float:
     """Load along the line of action that this scene is about [N]: from the torques, else from the motion."""
-    assert scene.drive
-    assert scene.load
-    assert scene.initial
     geometry, speed, duration = scene.geometry, scene.initial.gear_speed, scene.run.duration
     ratio = geometry.base_radius_gear / geometry.base_radius_pinion
     drive = _largest(scene.drive, speed * ratio, duration)
@@ -67,10 +62,8 @@ def reference_force(scene: Scene, mass: float) -> float:
     return force if force > 0.0 else mass * scene.surface.roughness * (1e3 / scene.run.duration) ** 2
 
 
-def add_torques(s: Record, tables: Tables, scene: Scene, begin: float) -> None:
+def add_torques(s: Record, tables: Tables, scene: GearScene, begin: float) -> None:
     """Lay out the torques of both shafts and the times of their knots, and set what the run follows from them."""
-    assert scene.drive
-    assert scene.load
     tau, force = float(s.time_unit), float(s.force_unit)
     shafts = ((DRIVE, scene.drive, float(s.pinion_radius)), (LOAD, scene.load, float(s.gear_radius)))
     knots = set()
@@ -116,10 +109,8 @@ def add_torques(s: Record, tables: Tables, scene: Scene, begin: float) -> None:
     s.balance_span = 1.0 / (1.0 / SPAN + 4.0 * math.pi * fastest * tau)
 
 
-def _set_looks(s: Record, tables: Floats, scene: Scene) -> None:
+def _set_looks(s: Record, tables: Floats, scene: GearScene) -> None:
     """Set how often the torques of what is held are looked at, and what is known of their harmonics."""
-    assert scene.drive
-    assert scene.load
     fastest = 0.0
     for own in s.torque:
         harmonics = tables[own.harmonics_at : own.harmonics_at + 3 * own.harmonic_count]
@@ -166,9 +157,8 @@ def set_run(s: Record, tables: Tables, scene: Scene, knots: set[float], begin: f
     s.root_limit, s.root_spacing = ROOT_LIMIT, ROOT_SPACING
 
 
-def set_stop(s: Record, scene: Scene, place: float) -> None:
+def set_stop(s: Record, scene: GearScene, place: float) -> None:
     """Set what ends the run before its time."""
-    assert scene.gears
     word, _, turns = scene.run.stop.partition(" ")
     s.stop, s.stop_from = STOPS.index(word), place
     s.stop_pitches = float(turns or 0.0) * scene.gears.gear_teeth

@@ -17,14 +17,24 @@ import numpy as np
 
 from gearidae.engine.elastic.kept_rows import KEPT_ROWS, kept_rows, restore_rows
 from gearidae.engine.followers.exposures.bins import exposures_of
-from gearidae.engine.model.state import EMPTY, STATE, Floats, Model, Record, assign, copied, empty_history
+from gearidae.engine.model.state import (
+    EMPTY,
+    MOTION,
+    STATE,
+    Floats,
+    Model,
+    Record,
+    assign,
+    copied,
+    empty_history,
+)
 from gearidae.engine.setup.checkpoint_checks import check, refused
 from gearidae.engine.setup.kept_asperities import asperity_words, joined_in, kept_asperities
 
 HEADER: Final = 8
 """Words in front of the state: layout, scene (four), contact model, states, words of node rows and exposures."""
 
-_LAYOUT: Final = int(hashlib.sha256(repr((STATE.descr, KEPT_ROWS)).encode()).hexdigest()[:8], 16)
+_LAYOUT: Final = int(hashlib.sha256(repr((STATE.descr, MOTION, KEPT_ROWS)).encode()).hexdigest()[:8], 16)
 _WORDS: Final = STATE.itemsize // 8
 _DEPTHS: Final = 64
 _NOTHING: Final = empty_history()

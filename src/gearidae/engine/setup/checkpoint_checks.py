@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from gearidae.engine.model.state import GEARS, PHASE, STATE_FIELDS, Floats, Model, Record
+from gearidae.engine.model.state import PHASE, STATE_FIELDS, Floats, Model, Record
 from gearidae.errors import SceneError
 from gearidae.records.quantity import COUNT_HIGH, LARGEST, REAL, Quantity
 
@@ -56,8 +56,7 @@ def check(m: Model, state: Record, y: Floats, rows: Floats, exposures: Floats) -
     _check_size(y, LARGEST, "the state vector")
     _check_size(rows, _NODES_HIGH, "the nodes")
     _check_size(exposures, LARGEST, "the exposures")
-    if m.scene.kind == GEARS:
-        require(abs(y[PHASE]) < COUNT_HIGH, "phase", "a number of pitches")
+    require(abs(y[PHASE]) < COUNT_HIGH, "phase", "a number of pitches")
 
 
 def _last_segments(m: Model) -> list[int]:

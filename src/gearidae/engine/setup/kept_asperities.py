@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 
 from gearidae.engine.model.state import EMPTY, Floats, Model
-from gearidae.engine.population.layout import FIELDS, INDEX, JOINED
+from gearidae.engine.population.layout import INDEX, joined_candidates
 from gearidae.engine.population.restore import take_joined
 from gearidae.engine.setup.checkpoint_checks import refused, require
 
@@ -21,15 +21,10 @@ FIRST: Final = 5  # words in front of the asperities
 
 def joined_asperities(m: Model) -> Floats:
     """Return the joined asperities of all pairs by their places among all, in rising order."""
-    own = m.scene.population
-    rows = m.rows[own.rows_at : own.rows_at + m.scene.histories * FIELDS * own.capacity]
-    columns = rows.reshape(m.scene.histories, FIELDS, -1)
-    found = [
-        columns[k, INDEX, columns[k, JOINED, : m.work.contact[k].joined].astype(np.int64)]
-        for k in range(m.scene.histories)
-        if m.state.history[k].pair != EMPTY
+    places = [
+        joined_candidates(m, k)[INDEX] for k in range(m.scene.histories) if m.state.history[k].pair != EMPTY
     ]
-    return np.sort(np.concatenate([np.empty(0), *found]))
+    return np.sort(np.concatenate([np.empty(0), *places]))
 
 
 def kept_asperities(m: Model) -> Floats:

@@ -14,7 +14,6 @@ from gearidae.engine.followers.in_turn import look_at
 from gearidae.engine.model.located import Located
 from gearidae.engine.model.state import (
     DRIVE,
-    GEARS,
     LOAD,
     SPEED,
     Floats,
@@ -123,17 +122,16 @@ class Problem:
         m.rows[first : first + self.start.size] = 1.0 / (rtol * self.tolerance_scale)
         s.balance_error = ERRORS * rtol
         s.flight_parts = math.ceil((PARTS_RTOL / rtol) ** (1.0 / 8.0))
-        if s.kind == GEARS:
-            s.friction.blur = rtol * float(self.tolerance_scale[U])
-            felt = FELT * rtol * float(self.tolerance_scale[V])
-            s.torque_omega = max(
-                self._fastest(shaft, felt / float(share))
-                for shaft, share in ((DRIVE, s.pinion_inverse_mass), (LOAD, s.gear_inverse_mass))
-            )
-            steepest = max(fastest_schedule(own, m.tables, 0.0) for own in s.schedule)
-            fastest = max(steepest, float(s.torque_omega) / FOLLOWED)
-            s.longest_step = 1.0 / fastest if fastest > 0.0 else 0.0
-            s.free_step = self._longest_free_step()
+        s.friction.blur = rtol * float(self.tolerance_scale[U])
+        felt = FELT * rtol * float(self.tolerance_scale[V])
+        s.torque_omega = max(
+            self._fastest(shaft, felt / float(share) if share > 0.0 else math.inf)
+            for shaft, share in ((DRIVE, s.pinion_inverse_mass), (LOAD, s.gear_inverse_mass))
+        )
+        steepest = max(fastest_schedule(own, m.tables, 0.0) for own in s.schedule)
+        fastest = max(steepest, float(s.torque_omega) / FOLLOWED)
+        s.longest_step = 1.0 / fastest if fastest > 0.0 else 0.0
+        s.free_step = self._longest_free_step()
         return m
 
     def _longest_free_step(self) -> float:

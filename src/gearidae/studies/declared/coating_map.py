@@ -25,13 +25,12 @@ from gearidae.runs.execution import Execution, RunOptions
 from gearidae.runs.running import prepare
 from gearidae.runs.sweep_plan import SweepPlan, plan_sweep, values_of
 from gearidae.runs.sweeping import run_plan
-from gearidae.scene import describe_key
+from gearidae.scene import describe_key, require_gears
 from gearidae.scene.carried import numbers_of
 from gearidae.scene.keys import scene_value
 from gearidae.scene.pairs import sweep_values
 from gearidae.scene.prefixes import with_prefix
 from gearidae.studies.announcement import grid_words
-from gearidae.studies.requirements import require_gears
 from gearidae.studies.study import Call, Column, Option, Picture, Rows, Study
 
 if TYPE_CHECKING:

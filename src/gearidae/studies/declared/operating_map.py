@@ -16,10 +16,10 @@ from gearidae.errors import SceneError
 from gearidae.runs.execution import RunOptions, prepared
 from gearidae.runs.sweep_plan import plan_sweep
 from gearidae.runs.sweeping import run_study
+from gearidae.scene import require_gears
 from gearidae.scene.pairs import sweep_values
 from gearidae.studies.announcement import grid_words
 from gearidae.studies.members import STICKS
-from gearidae.studies.requirements import require_gears
 from gearidae.studies.study import Call, Column, Option, Picture, Rows, Study
 
 if TYPE_CHECKING:

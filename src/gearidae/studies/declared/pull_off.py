@@ -15,7 +15,7 @@ from gearidae.populations.flanks import first_flanks
 from gearidae.progress import sweep_progress
 from gearidae.runs.execution import Execution, RunOptions
 from gearidae.runs.executors import side_by_side
-from gearidae.scene import Scene
+from gearidae.scene import GearScene, Scene
 from gearidae.scene.pairs import quantity
 from gearidae.scene.prefixes import with_prefix
 from gearidae.studies.study import Call, Column, Option, Picture, Rows, Study
@@ -137,7 +137,7 @@ def _seeds(scene: Scene, given: int | Sequence[int]) -> list[int]:
 
 
 def _load(scene: Scene, given: float | None) -> float:
-    if given is None and scene.gears is not None:
+    if given is None and isinstance(scene, GearScene):
         from gearidae.runs.estimates import mean_force
 
         given = mean_force(scene)

@@ -20,18 +20,18 @@ from gearidae.errors import SceneError
 from gearidae.runs.execution import RunOptions, SideBySide, prepared
 from gearidae.runs.kept_runs import KeptRuns
 from gearidae.runs.sweep_plan import values_of
+from gearidae.scene import require_gears
 from gearidae.scene.keys import find_key
 from gearidae.scene.pairs import sweep_values
 from gearidae.scene.quantity import whole
 from gearidae.studies.bracket import bracket
-from gearidae.studies.requirements import require_gears
 from gearidae.studies.study import Call, Column, Option, Picture, Rows, Study
 from gearidae.studies.threshold_run import ThresholdRun, run_until, value_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from gearidae.scene import Scene
+    from gearidae.scene import GearScene, Scene
 
 log = logging.getLogger(__name__)
 
@@ -103,10 +103,11 @@ def sticking_threshold(
     >>> found = gd.studies.sticking_threshold(scene, between=(0.4, 0.7), exits=5)  # doctest: +SKIP
     >>> float(found.limit.sel(exits=5))  # doctest: +SKIP
     """
+    scene = require_gears(scene)
     ends = _ends(scene, over, between)
     base, how = prepared(scene, options, samples="off")
     width = abs(ends[1] - ends[0]) * _WIDTH if width is None else width
-    _check(base, exits, width)
+    _check(exits, width)
     if not is_scheduled(base.to_dict()):  # a schedule has a time of its own
         base = base.replace({"run.duration": _window(base, exits)})
     waits = [*(number for number in _USUAL if number < exits), exits]
@@ -245,17 +246,14 @@ def _ends(scene: Scene, over: str, between: tuple[Any, Any]) -> tuple[float, flo
     return low, high
 
 
-def _check(scene: Scene, exits: int, width: float) -> None:
-    require_gears(scene)
+def _check(exits: int, width: float) -> None:
     whole("exits", exits, 1)
     if not 0.0 < width < math.inf:
         raise SceneError("width", width, "must be positive")
 
 
-def _window(scene: Scene, exits: int) -> float:
+def _window(scene: GearScene, exits: int) -> float:
     """Simulated time that a run gets [s]."""
-    assert scene.gears is not None
-    assert scene.initial is not None
     from gearidae.runs.estimates import steady_speed
 
     speed = steady_speed(scene)
@@ -263,7 +261,7 @@ def _window(scene: Scene, exits: int) -> float:
         speed = scene.initial.gear_speed
     if speed <= 0.0:
         allowed = "must turn the gear, or initial.gear_speed be positive"
-        raise SceneError("drive.torque", scene.drive.torque if scene.drive else 0.0, allowed)
+        raise SceneError("drive.torque", scene.drive.torque, allowed)
     return _PATIENCE * (exits + 1) * 2.0 * math.pi / (scene.gears.gear_teeth * speed)
 
 

@@ -14,7 +14,7 @@ from gearidae.engine.followers.extremes.speeds import (
     note_speed,
 )
 from gearidae.engine.followers.standing import follow as standing
-from gearidae.engine.model.state import GEARS, PHASE, ROLLER, Floats, Model, Record, U, V, W
+from gearidae.engine.model.state import PHASE, Floats, Model, Record, U, V, W
 from gearidae.engine.motion.separation import rigid_separation, separation
 
 
@@ -38,7 +38,7 @@ def step(m: Model, t: float, y: Floats, yp: Floats, event: bool, between: tuple[
         here = k.last + 1 if k.last < 2 else 0
         _set_point(m, here, t, y, yp)
         last, now = k.point[k.last], k.point[here]
-        if m.scene.kind == GEARS:
+        if m.scene.follow.gear != 0:
             follow_speed(m, last, now, y)
             standing.step(m, here, y)
         _follow_separation(m, last, now, y)
@@ -57,8 +57,7 @@ def _set_point(m: Model, i: int, t: float, y: Floats, yp: Floats) -> None:
     p = m.work.track.point[i]
     p.time, p.force = t, force_of_motion(m, t, y, yp)
     p.travel, p.travel_rate, p.travel_bend = y[U], y[V], yp[V]
-    if m.scene.kind == GEARS:
-        p.speed, p.speed_rate, p.position = y[W], yp[W], y[PHASE] + m.state.turns
+    p.speed, p.speed_rate, p.position = y[W], yp[W], y[PHASE] + m.state.turns
 
 
 @compiled
@@ -66,10 +65,7 @@ def note_present(m: Model, y: Floats) -> None:
     """Note a state as it is: until an extremum is passed it may be one."""
     if m.state.extremes.begun == 0:
         return
-    if m.scene.kind == GEARS:
-        note_speed(m, y[W])
-    else:
-        note_speed(m, y[V])
+    note_speed(m, y[W])
     _note_separation(m, separation(m, y))
 
 
@@ -77,12 +73,11 @@ def note_present(m: Model, y: Floats) -> None:
 def resume(m: Model, t: float, y: Floats) -> None:
     """Note that an event has brought the gear to rest, and that dry resistance holds it."""
     p = m.work.track.point[m.work.track.last]
-    if m.scene.kind == GEARS:
+    if m.scene.follow.gear != 0:
         standing.resume(m, t, y, p.speed)
-    if m.scene.kind == GEARS and y[W] <= 0.0 < p.speed:
+    if y[W] <= 0.0 < p.speed:
         come_to_stand(m, t, y[PHASE] + m.state.turns, is_pulled_back(m, t, y))
-    if m.scene.kind == GEARS:
-        p.speed = y[W]
+    p.speed = y[W]
     if m.scene.dry != 0 and m.state.slip == 0.0:
         note_hold(m, t)
 
@@ -92,11 +87,11 @@ def begin(m: Model, t: float, y: Floats, yp: Floats) -> None:
     """Go on from a start, where forces and accelerations may have jumped."""
     e, k = m.state.extremes, m.work.track
     if e.begun == 0:
-        e.lowest_speed = e.highest_speed = y[V] if m.scene.kind == ROLLER else y[W]
+        e.lowest_speed = e.highest_speed = y[W]
         e.separation = separation(m, y)
     k.time, k.last, k.smooth, k.next_part = t, 0, 1, next_part(m)
     _set_point(m, 0, t, y, yp)
-    if m.scene.kind == GEARS:
+    if m.scene.follow.gear != 0:
         standing.begin(m, t, y)
     first_force(m, t, k.point[0].force)
     e.begun = 1

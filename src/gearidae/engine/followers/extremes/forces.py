@@ -13,7 +13,7 @@ from typing import Final
 from gearidae.compiled import compiled
 from gearidae.engine.formulas import adams
 from gearidae.engine.formulas.interpolation import cubic, quintic, vertex
-from gearidae.engine.model.state import COAST, DRIVE, GEARS, PHASE, ROLLER, Floats, Model, Record, U, V, W
+from gearidae.engine.model.state import COAST, DRIVE, PHASE, Floats, Model, Record, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.pairs.tooth_pairs import in_flight, static_error
@@ -30,13 +30,11 @@ _CLOSE: Final = 1e-3
 
 @compiled(inline=True)
 def force_of_motion(m: Model, t: float, y: Floats, yp: Floats) -> float:
-    """Force along the line of action, mesh damping included, from the pinion's acceleration; of a roller, on it.
+    """Force along the line of action, mesh damping included, from the pinion's acceleration.
 
     See `gearidae.engine.motion.residual`, whose first equation is solved for the force. Friction acts on the pinion,
     too: with it the contact law is asked.
     """
-    if m.scene.kind == ROLLER:
-        return 0.0 if in_flight(m) else yp[V] / m.scene.gear_inverse_mass
     if in_flight(m):
         return m.scene.damping * y[V]
     if m.scene.friction.rubs != 0:
@@ -154,9 +152,8 @@ def _force_between(m: Model, before: Record, last: Record, now: Record, t: float
     y[U] = quintic(s, h, (p.travel, p.travel_rate, p.travel_bend), (q.travel, q.travel_rate, q.travel_bend))
     y[V] = cubic(s, h, p.travel_rate, p.travel_bend, q.travel_rate, q.travel_bend)
     scale = m.scene.phase_rate
-    if m.scene.kind == GEARS:
-        y[PHASE] = cubic(s, h, p.position, scale * p.speed, q.position, scale * q.speed) - m.state.turns
-        y[W] = cubic(s, h, p.speed, p.speed_rate, q.speed, q.speed_rate)
+    y[PHASE] = cubic(s, h, p.position, scale * p.speed, q.position, scale * q.speed) - m.state.turns
+    y[W] = cubic(s, h, p.speed, p.speed_rate, q.speed, q.speed_rate)
     return float(force_of_law(m, t, y))
 
 

@@ -33,7 +33,7 @@ def extremes_in_si(m: Model, place: int, time: float, y: Floats) -> Extremes:
     s, e = m.scene, plain(m.state.extremes)
     numbers = in_si(FORCE_EXTREMES, m.state.extremes, s) | in_si(ASPERITY_COUNTS, m.state, s)
     if s.kind == ROLLER:
-        return Extremes(numbers, final_speed=float(y[V] * s.length_unit / s.time_unit))
+        return Extremes(numbers, final_speed=float(-y[V] * s.length_unit / s.time_unit))
     numbers |= in_si(SPEED_EXTREMES, m.state.extremes, s)
     speeds = _speeds(e, float(s.phase_rate), time, float(y[PHASE] + m.state.turns))
     numbers |= in_si(SPEEDS_NOW, speeds | {"final_speed": float(y[W])}, s)

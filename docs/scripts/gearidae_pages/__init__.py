@@ -1,0 +1,1 @@
+"""Tables and pictures of the documentation: ``python -m gearidae_pages.NAME`` with this folder on the Python path."""

@@ -1,0 +1,77 @@
+"""The asperities of a pinion's flank, as they meet the gear's."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearidae.arrays import Floats
+from gearidae.mesh.involute import curvature_radii, flank_arc
+from gearidae.populations.flanks import flanks_of
+from gearidae.populations.materials import materials_at
+from gearidae.records import Flank
+from gearidae.scene import MATERIAL_NAMES, Scene
+from gearidae.scene.coating_table import met_teeth
+
+Integers = NDArray[np.int64]
+
+
+class MetFlank(NamedTuple):
+    """The asperities of a pinion's flank, with the materials that they meet on the gear's.
+
+    Attributes
+    ----------
+    arc : ndarray, shape (n,)
+        Places from the base circle [m].
+    height : ndarray, shape (n,)
+        Over the mean plane, less the recess where the monolayer is lost [m].
+    radius : ndarray, shape (n,)
+        Of the tips [m].
+    material : ndarray of int, shape (n,)
+        Among `gearidae.scene.MATERIAL_NAMES`.
+    """
+
+    arc: Floats
+    height: Floats
+    radius: Floats
+    material: Integers
+
+    def some(self, which: Integers | NDArray[np.bool_]) -> MetFlank:
+        """Return some of them, by their numbers or by a mask."""
+        return MetFlank(self.arc[which], self.height[which], self.radius[which], self.material[which])
+
+    def overlaps(self, scene: Scene, place: float, gap: float) -> Floats:
+        """Overlap of each with the gear's flank [m], where the pair touches at a place on its path with a gap [m]."""
+        x = self.arc - contact_arc(scene, place)
+        return np.asarray(self.height - gap - x**2 / (2.0 * _radius(scene, place)))
+
+
+def met_flank(scene: Scene, pair: int, flank: Flank) -> MetFlank:
+    """Return the asperities of the pinion's flank in a pair of teeth.
+
+    Parameters
+    ----------
+    scene : Scene
+        With ``contact.roughness = "discrete"``.
+    """
+    assert scene.gears is not None
+    coast = flank == Flank.COAST
+    tooth, gear_tooth = (int(one) for one in met_teeth(pair, coast=coast))
+    which = tooth % scene.gears.pinion_teeth, int(coast)
+    one = next(one for one in flanks_of(scene) if (one.tooth, one.flank) == which)
+    material = materials_at(scene, one, gear_tooth)
+    recess = {each.name: each.gap_offset for each in scene.materials()}
+    recesses = np.array([recess.get(name, 0.0) for name in MATERIAL_NAMES])
+    return MetFlank(one.arc, one.height - recesses[material], one.radius, material)
+
+
+def contact_arc(scene: Scene, place: float) -> float:
+    """Arc on the pinion's flank at which a pair touches [m]: outside its path at its end."""
+    return float(flank_arc(scene.geometry, min(max(place, 0.0), scene.geometry.path_length)))
+
+
+def _radius(scene: Scene, place: float) -> float:
+    """Reduced radius of curvature where a pair touches [m]."""
+    return float(curvature_radii(scene.geometry, place)[2])

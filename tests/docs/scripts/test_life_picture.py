@@ -1,0 +1,16 @@
+"""The picture of a life on its page is that of the life that its text tells of."""
+
+import numpy as np
+
+import gearidae as gd
+from gearidae_pages.life_picture import follow, shown
+
+
+def test_a_short_life_is_followed_assessed_and_told():
+    scene = gd.preset("teodorescu2009_low_speed").replace({"coating.sam_fraction": 0.7})
+    seen = follow(scene, np.linspace(0.64, 0.76, 7), fraction=0.69)
+    told = shown(seen)
+    assert "ends: coverage" in told
+    assert f"assessments: {seen.sizes['passages']}, clear: " in told
+    late = seen.isel(passages=-1)
+    assert float(late.assessed_low) <= float(late.coverage.mean()) <= float(late.assessed_high)
