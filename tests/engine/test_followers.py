@@ -126,7 +126,9 @@ def test_datasets_go_without(tmp_path):
     assert "residual" in energies
     assert all(told[name] is None for name in energies)
     gd.write_report(ds, tmp_path / "report.html")
-    assert "adhesion loss" not in (tmp_path / "report.html").read_text()
+    assert ">adhesion loss<" not in (tmp_path / "report.html").read_text()
+    gd.write_report(gd.simulate(GEARS), tmp_path / "whole.html")
+    assert ">adhesion loss<" in (tmp_path / "whole.html").read_text()
     low = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 0.02, "run.samples": 501})
     (found,) = gd.outcomes(gd.simulate(low.replace(WITHOUT)))
     (expected,) = gd.outcomes(gd.simulate(low))

@@ -163,10 +163,9 @@ def test_energy_per_tooth_needs_no_chain_of_runs():
 # -- forces and impacts ----------------------------------------------------------------------------------------------
 
 
-def test_forces_are_those_between_mesh_exits(backend):
+def test_forces_are_those_between_mesh_exits():
     """Against the samples in between, which miss the peak of an impact by little."""
-    scene = FAST.replace({"run.samples": 200_001})
-    run = solve(scene, backend=backend)
+    run = solve(FAST.replace({"run.samples": 200_001}))
     rows, force = run.passages, run.samples["mesh_force"]
     scale = np.abs(force).max()
     for flank in (0, 1):

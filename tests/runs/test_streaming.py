@@ -187,7 +187,7 @@ def test_killed_at_fifteen_random_instants_and_resumed_is_the_same_run(path):
     assert kill_again_and_again(path, scene, "sksundae", 15, 0.05) == 15
 
 
-@pytest.mark.slow
+@pytest.mark.by_hand
 def test_start_up_killed_at_random_instants_is_the_same_run(path, monkeypatch):
     """The native driver takes a checkpoint about every fifth of a second, which is compiled in."""
     monkeypatch.setattr(growing, "CHECKPOINT_SECONDS", 0.0)
