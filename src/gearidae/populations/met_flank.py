@@ -12,7 +12,7 @@ from gearidae.mesh.involute import curvature_radii, flank_arc
 from gearidae.populations.flanks import flanks_of
 from gearidae.populations.materials import materials_at
 from gearidae.records import Flank
-from gearidae.scene import MATERIAL_NAMES, Scene
+from gearidae.scene import MATERIAL_NAMES, GearScene
 from gearidae.scene.coating_table import met_teeth
 
 Integers = NDArray[np.int64]
@@ -42,13 +42,13 @@ class MetFlank(NamedTuple):
         """Return some of them, by their numbers or by a mask."""
         return MetFlank(self.arc[which], self.height[which], self.radius[which], self.material[which])
 
-    def overlaps(self, scene: Scene, place: float, gap: float) -> Floats:
+    def overlaps(self, scene: GearScene, place: float, gap: float) -> Floats:
         """Overlap of each with the gear's flank [m], where the pair touches at a place on its path with a gap [m]."""
         x = self.arc - contact_arc(scene, place)
         return np.asarray(self.height - gap - x**2 / (2.0 * _radius(scene, place)))
 
 
-def met_flank(scene: Scene, pair: int, flank: Flank) -> MetFlank:
+def met_flank(scene: GearScene, pair: int, flank: Flank) -> MetFlank:
     """Return the asperities of the pinion's flank in a pair of teeth.
 
     Parameters
@@ -56,7 +56,6 @@ def met_flank(scene: Scene, pair: int, flank: Flank) -> MetFlank:
     scene : Scene
         With ``contact.roughness = "discrete"``.
     """
-    assert scene.gears is not None
     coast = flank == Flank.COAST
     tooth, gear_tooth = (int(one) for one in met_teeth(pair, coast=coast))
     which = tooth % scene.gears.pinion_teeth, int(coast)
@@ -67,11 +66,11 @@ def met_flank(scene: Scene, pair: int, flank: Flank) -> MetFlank:
     return MetFlank(one.arc, one.height - recesses[material], one.radius, material)
 
 
-def contact_arc(scene: Scene, place: float) -> float:
+def contact_arc(scene: GearScene, place: float) -> float:
     """Arc on the pinion's flank at which a pair touches [m]: outside its path at its end."""
     return float(flank_arc(scene.geometry, min(max(place, 0.0), scene.geometry.path_length)))
 
 
-def _radius(scene: Scene, place: float) -> float:
+def _radius(scene: GearScene, place: float) -> float:
     """Reduced radius of curvature where a pair touches [m]."""
     return float(curvature_radii(scene.geometry, place)[2])

@@ -120,9 +120,8 @@ _NEAR_LOCKING: Final = 0.5
 """Share of the coefficient that locks teeth or hubs, up to which friction changes forces by less than double."""
 
 
-def locking_rows(scene: Scene) -> Iterator[ValidityRow]:
+def locking_rows(scene: GearScene) -> Iterator[ValidityRow]:
     """Compare coefficients of friction with those that lock the teeth or a hub; nothing where they are zero."""
-    assert scene.gears is not None
     gears, geometry, values = scene.gears, scene.geometry, friction_values(scene)
     where = max((values[one.name] for one in scene.materials() if one.share > 0.0), default=0.0)
     if has_flank_friction(scene) and scene.contact.friction_law == "coulomb":

@@ -148,11 +148,7 @@ SCENE: Final = record_type(
     ("pinion_teeth", REAL),  # [1]
     ("pinion_inverse_mass", REAL),  # R1^2 tau^2 F / (I1 sigma): acceleration per force; 1 of a roller [1]
     ("gear_inverse_mass", REAL),  # R2^2 tau^2 F / (I2 sigma); 0 where the gear is held [1]
-    (
-        "clearance",
-        REAL,
-        (2,),
-    ),  # gap on the path at u = 0, of each flank; infinite where it meets none [sigma]
+    ("clearance", REAL, (2,)),  # gap on the path at u = 0 by flank; infinite where it meets none [sigma]
     ("phase_rate", REAL),  # sigma / pb: rate of the phase per surface velocity of the gear [1]
     ("contact_ratio", REAL),  # path of contact [pb]
     ("coast_phase", REAL),  # 2 approach / pb + 1/2: mirrors the coast flank about the pitch point [pb]

@@ -25,17 +25,7 @@ from gearidae.contact.kernels.law import (
     stretched_value,
 )
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.model.state import (
-    COAST,
-    DRIVE,
-    MATERIALS,
-    PHASE,
-    Floats,
-    Model,
-    U,
-    V,
-    W,
-)
+from gearidae.engine.model.state import COAST, DRIVE, MATERIALS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.pairs.coverage import Shares, loading_of
 
 ANGLE_PHASE = 1e-9

@@ -14,12 +14,16 @@ from typing import Final
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.followers.standing.free_torques import enter_segments, excess, free_torque
+from gearidae.engine.followers.standing.free_torques import (
+    enter_segments,
+    excess,
+    free_torque,
+    largest_excess,
+)
 from gearidae.engine.formulas.interpolation import cubic
 from gearidae.engine.friction.forces import NO_FORCE
 from gearidae.engine.model.state import DRIVE, LOAD, Model
 from gearidae.engine.torques.schedule import straight_until
-from gearidae.engine.torques.torque import torque_range
 
 TOLERANCE: Final = 1e-5
 """Relative error of speed and travel in a step; of the travel also this many tenths of a pitch."""
@@ -59,7 +63,7 @@ def _follow_piece(m: Model, i: int, t: float, stop: float, enough: float) -> flo
         if w == 0.0:
             push = free_torque(m, i, DRIVE, t, x, 0.0)
             if abs(push) <= free_torque(m, i, LOAD, t, x, 0.0) + NO_FORCE:
-                after = _certain_rest(m, t, stop)
+                after = _certain_rest(m, i, t, stop)
                 if after == t:
                     after = min(max(_rests_until(m, i, x, t, min(stop, t + longest)), t + least), stop)
                 _book_drive(m, i, t, after)
@@ -164,14 +168,12 @@ def _comes_to_rest(
 
 
 @compiled
-def _certain_rest(m: Model, t: float, stop: float) -> float:
+def _certain_rest(m: Model, i: int, t: float, stop: float) -> float:
     """Time up to which bounds of both torques say that free gears stay at rest; `t` if they do not say so."""
     if m.work.torque_law[DRIVE] != 0 or m.work.torque_law[LOAD] != 0:
         return t
     to = straight_until(m, t, stop)
-    low, high = torque_range(m, DRIVE, t, to, 0.0)
-    least = torque_range(m, LOAD, t, to, 0.0)[0] if m.scene.dry != 0 else 0.0
-    return to if max(abs(low), abs(high)) <= max(least, 0.0) else t
+    return to if largest_excess(m, i, t, to) <= 0.0 else t
 
 
 @compiled

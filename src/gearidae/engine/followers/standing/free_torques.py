@@ -7,8 +7,7 @@ import math
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.model.state import DRIVE, LOAD, SCHEDULES, Model
-from gearidae.engine.torques.harmonic import sum_of_cosines
-from gearidae.engine.torques.torque import torque_force
+from gearidae.engine.torques.torque import torque_force, torque_range
 
 
 @compiled
@@ -40,27 +39,14 @@ def excess(m: Model, i: int, t: float) -> float:
 
 
 @compiled
-def largest_excess(m: Model, i: int, t: float) -> float:
-    """Return the same with all harmonics at their amplitudes, the worst that they can do."""
-    drive = free_torque(m, i, DRIVE, t, 0.0, 0.0) - _harmonics(m, DRIVE, t)
-    load = free_torque(m, i, LOAD, t, 0.0, 0.0)
-    if m.scene.dry != 0:
-        load = max(load - _harmonics(m, LOAD, t) - _amplitudes(m, LOAD), 0.0)
-    return abs(drive) + _amplitudes(m, DRIVE) - load
+def largest_excess(m: Model, i: int, t: float, to: float) -> float:
+    """Bound of the same over a time in which schedules go one way, with all harmonics at their amplitudes.
 
-
-@compiled
-def _harmonics(m: Model, shaft: int, t: float) -> float:
-    own = m.scene.torque[shaft]
-    return sum_of_cosines(m, own.harmonics_at, own.harmonic_count, t)
-
-
-@compiled
-def _amplitudes(m: Model, shaft: int) -> float:
-    own, total = m.scene.torque[shaft], 0.0
-    for k in range(own.harmonic_count):
-        total += abs(m.tables[own.harmonics_at + 3 * k])
-    return total
+    Of a law the bound is that of its present value.
+    """
+    low, high = torque_range(m, DRIVE, t, to, _angle(m, i, DRIVE, 0.0))
+    load = torque_range(m, LOAD, t, to, _angle(m, i, LOAD, 0.0))[0] if m.scene.dry != 0 else 0.0
+    return max(abs(low), abs(high)) - max(load, 0.0)
 
 
 @compiled
