@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Annotation
 
 import gearidae as gd
-from gearidae.plot.bands import banded, crowded_from
+from gearidae.analysis.spectra import banded, crowded_from
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 0.1, "run.samples": 10_001})
 HIGH = gd.preset("teodorescu2009").replace({"run.duration": 3e-4, "run.samples": 6001})

@@ -28,6 +28,8 @@ from gearidae.scene import Scene
 from gearidae.scene.quantity import whole
 
 _MOST_PADDING = 64
+_PER_OCTAVE = 24
+"""Bands of an octave over which a spectrum on a logarithmic axis is averaged."""
 _PIECES = 64
 """A spectrogram's segment is this part of the record by default."""
 
@@ -238,3 +240,37 @@ def _contact_frequency(scene: Scene, run: xr.Dataset) -> float:
         return 0.0
     inverse_mass = pinion**2 / scene.gears.pinion_inertia + gear**2 / scene.gears.gear_inertia
     return math.sqrt(max(contact.joined_stiffness(gap), 0.0) * inverse_mass) / (2.0 * math.pi)
+
+
+def crowded_from(resolution: float) -> float:
+    """Return the frequency above which a band of 1/24 octave is wider than the resolution [Hz]."""
+    return float(resolution / (2.0 ** (1.0 / _PER_OCTAVE) - 1.0))
+
+
+def banded(frequency: Floats, density: Floats, resolution: float) -> tuple[Floats, Floats]:
+    """Average a spectrum over bands of 1/24 octave, where these are wider than its resolution.
+
+    Parameters
+    ----------
+    frequency : ndarray, shape (n,)
+        In equal steps [Hz].
+    density : ndarray, shape (n,)
+        Power spectral density.
+    resolution : float
+        Inverse of the record's length [Hz].
+
+    Returns
+    -------
+    frequency, density : ndarray, shape (m,)
+        The values below about 35 times the resolution, then the mean density of each band at its middle: the power in
+        a band stays what it is.
+    """
+    from_here = crowded_from(resolution)
+    crowded = frequency >= from_here
+    if not crowded.any():
+        return frequency, density
+    number = np.floor(_PER_OCTAVE * np.log2(frequency[crowded] / from_here)).astype(np.int64)
+    _, first, count = np.unique(number, return_index=True, return_counts=True)
+    means = np.add.reduceat(density[crowded], first) / count
+    middles = np.add.reduceat(frequency[crowded], first) / count
+    return np.concatenate([frequency[~crowded], middles]), np.concatenate([density[~crowded], means])

@@ -11,12 +11,12 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import EngFormatter
 
 from gearidae import analysis
+from gearidae.analysis.spectra import banded, crowded_from
 from gearidae.analysis.verdict import START_UP
 from gearidae.archive.pieces import pieces, reached
 from gearidae.archive.select import runs, scene_of
 from gearidae.drawing.style import Run, legend, new_axes, runs_of, scale_for, thin, tidy
 from gearidae.errors import SceneError
-from gearidae.plot.bands import banded, crowded_from
 from gearidae.scene.prefixes import with_prefix
 
 _DECADES = 6

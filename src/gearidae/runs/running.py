@@ -9,7 +9,7 @@ import math
 import sys
 import threading
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import numpy as np
 
@@ -31,6 +31,8 @@ SomeScene = TypeVar("SomeScene", bound=Scene)
 _ADVICE = "try another rtol (run.rtol); the samples and events up to there are kept"
 _LEAST_MEMORY = 1.25e9
 """Addresses [bytes] that the solver's libraries and threads take; in memory there is a fourth of it."""
+FAILS: Final = "fails: "
+"""Beginning of the word for a failed run of a study, before its message; such a run does not end a study of several."""
 _STATE = ("gear_speed", "transmission_error", "drive_gap", "height", "speed", "force")
 
 
@@ -164,6 +166,11 @@ def unfinished(solution: Solution, what: str) -> SolverError:
         last_event="",
         advice="try another rtol (run.rtol)",
     )
+
+
+def failure_of(word: str) -> str:
+    """Return the message that the word for a failed run carries; empty for another word."""
+    return word.removeprefix(FAILS) if word.startswith(FAILS) else ""
 
 
 def unsolved(status: str, message: str) -> Solution:

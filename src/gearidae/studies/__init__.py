@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from gearidae.studies.declared.threshold import sticking_threshold as sticking_threshold
     from gearidae.studies.equilibrium import contact_resonance as contact_resonance
     from gearidae.studies.equilibrium import natural_frequency as natural_frequency
-    from gearidae.studies.life_signals import assess_life as assess_life
+    from gearidae.studies.life_dataset import assess_life as assess_life
     from gearidae.studies.observation_files import read_observations as read_observations
     from gearidae.studies.observations import Observation as Observation
     from gearidae.studies.products import open_life as open_life

@@ -15,11 +15,11 @@ from gearidae.arrays import Floats
 from gearidae.errors import SceneError, SolverError
 from gearidae.runs.execution import RunOptions, prepared
 from gearidae.runs.kept_runs import KeptRuns
+from gearidae.runs.running import failure_of
 from gearidae.scene import require_gears
 from gearidae.scene.joints import joints
 from gearidae.scene.quantity import Quantity, whole
 from gearidae.studies.declared.hub_life import FITTED, QUANTILES, STUDY
-from gearidae.studies.failures import failure_of
 from gearidae.studies.hub_turns import SUMS, Slid, Turns, run_turns, settling_scene
 from gearidae.studies.hub_wear import (
     Threshold,

@@ -17,9 +17,9 @@ from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.runs.execution import Execution, SideBySide
 from gearidae.runs.kept_runs import KeptRuns
+from gearidae.runs.running import failure_of
 from gearidae.scene.quantity import whole
 from gearidae.studies.declared.starting_torque import GEARS, SEEDS, SLOW_ENOUGH
-from gearidae.studies.failures import failure_of
 from gearidae.studies.starting_parts import PARTS, parts_of
 from gearidae.studies.starting_ramp import (
     RESTS,

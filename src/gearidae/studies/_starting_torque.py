@@ -18,14 +18,13 @@ from gearidae.archive.variables import SAM_FRACTION
 from gearidae.errors import SceneError
 from gearidae.runs.execution import Execution, RunOptions, prepared
 from gearidae.runs.kept_runs import KeptRuns
-from gearidae.runs.running import solve_to_end, unfinished, unsolved
+from gearidae.runs.running import FAILS, failure_of, solve_to_end, unfinished, unsolved
 from gearidae.scene import require_gears
 from gearidae.scene.carried import numbers_of
 from gearidae.scene.quantity import whole
 from gearidae.studies._starting_seeds import starting_torques
 from gearidae.studies.bracket import STRIDE, bracket, next_value
 from gearidae.studies.declared.starting_torque import STUDY
-from gearidae.studies.failures import FAILS, failure_of
 from gearidae.studies.release import holding_forces
 from gearidae.studies.requirements import require_constant
 from gearidae.studies.starting_parts import PARTS, Starting, parts_of

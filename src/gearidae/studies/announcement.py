@@ -61,8 +61,8 @@ def draw_words(scene: Scene, keys: Mapping[str, str], runs: int, workers: int | 
     SceneError
         If a key or a distribution is not allowed.
     """
+    from gearidae.studies.design import without_seeds
     from gearidae.studies.distributions import read_distributions
-    from gearidae.studies.seeds import without_seeds
 
     own = without_seeds(scene, keys)
     drawn = read_distributions(scene, own) if own or own is keys else ()

@@ -12,8 +12,7 @@ import numpy as np
 from gearidae import engine
 from gearidae.arrays import Floats
 from gearidae.errors import SolverError
-from gearidae.runs.running import solve_to_end, unfinished, unsolved
-from gearidae.studies.failures import FAILS
+from gearidae.runs.running import FAILS, solve_to_end, unfinished, unsolved
 
 if TYPE_CHECKING:
     from gearidae.records import Solution

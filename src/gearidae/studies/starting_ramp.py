@@ -18,8 +18,7 @@ from gearidae.errors import SolverError
 from gearidae.mesh.pair_contact import asperity_stiffness
 from gearidae.populations.first_touch import first_touch
 from gearidae.runs.estimates import effective_mass
-from gearidae.runs.running import solve_to_end, unfinished, unsolved
-from gearidae.studies.failures import FAILS
+from gearidae.runs.running import FAILS, solve_to_end, unfinished, unsolved
 from gearidae.studies.starting_parts import WITHOUT_FLANKS, Starting
 
 if TYPE_CHECKING:

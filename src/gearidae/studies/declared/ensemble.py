@@ -26,13 +26,21 @@ from gearidae.scene.pairs import texts as read_texts
 from gearidae.scene.prefixes import with_prefix
 from gearidae.studies._sticking_probability import sticking_probability
 from gearidae.studies.announcement import draw_words
-from gearidae.studies.design import Design, check_design, pick_freeze_design, plain_design
+from gearidae.studies.design import (
+    NO_INDEX,
+    SEEDS,
+    Design,
+    check_design,
+    pick_freeze_design,
+    plain_design,
+    seed_numbers,
+    without_seeds,
+)
 from gearidae.studies.distributions import read_distributions
 from gearidae.studies.indices import FEWEST, indices_of
 from gearidae.studies.members import along_members, count_rows, member_plan, names_of
 from gearidae.studies.options import VARY_EXAMPLE, Seed, Vary
 from gearidae.studies.options import Design as DesignOption
-from gearidae.studies.seeds import NO_INDEX, SEEDS, seed_numbers, without_seeds
 from gearidae.studies.study import Call, Column, Option, Picture, Rows, Study
 
 if TYPE_CHECKING:
