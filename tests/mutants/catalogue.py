@@ -392,7 +392,7 @@ MUTANTS = (
     ),
     Mutant(
         "bands of a spectrum that add up their lines in place of the mean",
-        "plot/bands.py",
+        "analysis/spectra.py",
         "means = np.add.reduceat(density[crowded], first) / count",
         "means = np.add.reduceat(density[crowded], first)",
         ("plot/test_spectra_and_maps.py",),
