@@ -38,11 +38,11 @@ def lazy_names(
     assert here.__spec__ is not None
     assert isinstance(here.__spec__.loader, SourceFileLoader)
     home = {
-        each.name: str(node.module)
+        alias.name: str(node.module)
         for node in ast.walk(ast.parse(here.__spec__.loader.get_data(str(here.__file__))))
         if isinstance(node, ast.ImportFrom)
-        for each in node.names
-        if each.name == each.asname
+        for alias in node.names
+        if alias.name == alias.asname
     }
     for file in pkgutil.iter_modules(import_module(files_of).__path__) if files_of else ():
         if (place := f"{files_of}.{file.name}") not in home.values():

@@ -177,8 +177,8 @@ def assess(
             f"({count} runs)",
             f"must be one run: pick one with .sel({dim}=...), or --select {dim}=...",
         )
-    found = judge(batch.signals[0], model, sensor)
-    return replace(found, reading=str(data.attrs.get("reading", "")))
+    assessment = judge(batch.signals[0], model, sensor)
+    return replace(assessment, reading=str(data.attrs.get("reading", "")))
 
 
 def judge(signal: Signal, model: MapModel, sensor: Sensor) -> Assessment:
@@ -191,35 +191,37 @@ def judge(signal: Signal, model: MapModel, sensor: Sensor) -> Assessment:
     """
     speed = signal.forward()
     speed = replace(speed, calibration=sensor.uncertainty(float(np.median(speed.values))))
-    found = _judged(speed, model, sensor)
+    assessment = _judged(speed, model, sensor)
     if alone := doubts.lone_samples(speed):
-        return _without_answer(found, "does not fit", lone_words(speed, alone))
-    if found.verdict != "gear stops":
-        found = _calibrated(found, speed, model)
+        return _without_answer(assessment, "does not fit", lone_words(speed, alone))
+    if assessment.verdict != "gear stops":
+        assessment = _calibrated(assessment, speed, model)
     if speed.values is signal.values:
-        return found
-    return replace(found, explanation=f"{found.explanation}; the speed is taken with its sign reversed")
+        return assessment
+    return replace(
+        assessment, explanation=f"{assessment.explanation}; the speed is taken with its sign reversed"
+    )
 
 
-def _calibrated(found: Assessment, signal: Signal, model: MapModel) -> Assessment:
+def _calibrated(assessment: Assessment, signal: Signal, model: MapModel) -> Assessment:
     """Take an answer back where impacts ring, but not one pitch apart: windows and torque are then wrong."""
     spacing = unlike_pitch(signal)
     if spacing == 1.0:
-        return found
+        return assessment
     corrected = replace(signal, values=signal.values / spacing)
     responses = rings_of(corrected, model.width)
     ringing = [n for n, ring in enumerate(responses) if math.isfinite(ring.frequency)]
     if len(ringing) < _FEWEST_RINGS or doubts.persistent(corrected, responses, ringing, model.width):
-        return found
+        return assessment
     frequencies = tuple(ring.frequency for ring in responses)
     why = calibration_words(spacing, signal.calibration, [frequencies[n] for n in ringing])
-    return replace(_without_answer(found, CALIBRATION_VERDICT, why), frequencies=frequencies)
+    return replace(_without_answer(assessment, CALIBRATION_VERDICT, why), frequencies=frequencies)
 
 
-def _without_answer(found: Assessment, verdict: str, why: str) -> Assessment:
+def _without_answer(assessment: Assessment, verdict: str, why: str) -> Assessment:
     nothing = math.nan
     return replace(
-        found,
+        assessment,
         sam_fraction=nothing,
         low=nothing,
         high=nothing,
@@ -263,8 +265,10 @@ def _judged(signal: Signal, model: MapModel, sensor: Sensor) -> Assessment:
         return replace(silent, verdict="does not fit", explanation=tone_words(rings))
     may_be_start = _may_be_start(signal, model, responses, len(shown))
     fit = first_explanation(model, rings, sensor.history, may_be_start=may_be_start)
-    found = _read(fit, model, rings, replace(silent, history=fit.history), signal.rate)
-    return _vetoed(found, signal, model, rings, fit, sensor.cutoff) if found.conclusive else found
+    assessment = _read(fit, model, rings, replace(silent, history=fit.history), signal.rate)
+    return (
+        _vetoed(assessment, signal, model, rings, fit, sensor.cutoff) if assessment.conclusive else assessment
+    )
 
 
 def _may_be_start(signal: Signal, model: MapModel, responses: list[Ring], shown: int) -> bool:
@@ -277,7 +281,7 @@ def _may_be_start(signal: Signal, model: MapModel, responses: list[Ring], shown:
 
 
 def _vetoed(
-    found: Assessment, signal: Signal, model: MapModel, rings: RingSet, fit: Fit, cutoff: float
+    assessment: Assessment, signal: Signal, model: MapModel, rings: RingSet, fit: Fit, cutoff: float
 ) -> Assessment:
     """Take a clear answer back where something is wrong with the record."""
     why = doubts.slower_than_map(signal, model)
@@ -287,8 +291,8 @@ def _vetoed(
         verdict = "sampled too slowly"
         text = f"impacts seem to ring at {listed(rings.frequency)} Hz, but {why}"
     if not why:
-        return found
-    return _without_answer(found, verdict, text)
+        return assessment
+    return _without_answer(assessment, verdict, text)
 
 
 def _read(fit: Fit, model: MapModel, rings: RingSet, silent: Assessment, rate: float) -> Assessment:
@@ -311,24 +315,24 @@ def _read(fit: Fit, model: MapModel, rings: RingSet, silent: Assessment, rate: f
     low = max(float(fractions[0]), float(possible[0]) - spacing)
     high = min(float(fractions[-1]), float(possible[-1]) + spacing)
     torque = math.nan if model.torques is None else model.torque_at(rings.speed)
-    found = replace(silent, low=low, high=high, torque=torque)
+    answer = replace(silent, low=low, high=high, torque=torque)
     at = listed(rings.frequency)
     if np.diff(possible).max(initial=0.0) > _GAP or high - low > _PLAIN:
         why = (
             f"impacts ring at {at} Hz, which SAM fractions from {low:.3f} to {high:.3f} explain alike; "
             f"{what_would_tell(fit, model, rings)} can tell"
         )
-        return replace(found, verdict="ambiguous", explanation=why)
+        return replace(answer, verdict="ambiguous", explanation=why)
     fraction = float(fractions[fit.best])
     since = "counted from the start" if fit.history == "start" else "the start not being in the record"
     why = f"SAM fraction {fraction:.3f} (95 %: {low:.3f} to {high:.3f}); impacts ring at {at} Hz, {since}"
     why += torque_words(fit, model, rings) + too_slow
     if low == fractions[0] > 0.0:
         why += "; the map ends there, and less could be left"
-    return replace(found, sam_fraction=fraction, verdict="clear", explanation=why)
+    return replace(answer, sam_fraction=fraction, verdict="clear", explanation=why)
 
 
-def assessment_table(found: Assessment) -> str:
+def assessment_table(assessment: Assessment) -> str:
     """Write an assessment as HTML, without colours of its own, so that it can be read on any background.
 
     Returns
@@ -339,26 +343,28 @@ def assessment_table(found: Assessment) -> str:
     rows = "".join(
         f"<tr><th style='text-align: left'>{html.escape(name)}</th>"
         f"<td style='text-align: left'>{html.escape(text)}</td></tr>"
-        for name, text in _rows(found)
+        for name, text in _rows(assessment)
     )
-    caption = f"<b>{html.escape(found.verdict)}</b>: {html.escape(found.explanation)}"
+    caption = f"<b>{html.escape(assessment.verdict)}</b>: {html.escape(assessment.explanation)}"
     return f"<table><caption style='text-align: left'>{caption}</caption>{rows}</table>"
 
 
-def _rows(found: Assessment) -> Iterator[tuple[str, str]]:
-    if not math.isnan(found.sam_fraction):
-        yield "SAM fraction", f"{found.sam_fraction:.4g}"
-    if not math.isnan(found.low):
-        yield "95 % interval", f"{found.low:.4g} to {found.high:.4g}"
+def _rows(assessment: Assessment) -> Iterator[tuple[str, str]]:
+    if not math.isnan(assessment.sam_fraction):
+        yield "SAM fraction", f"{assessment.sam_fraction:.4g}"
+    if not math.isnan(assessment.low):
+        yield "95 % interval", f"{assessment.low:.4g} to {assessment.high:.4g}"
     yield (
         "record begins",
-        {"start": "with the start of the map's runs"}.get(found.history, "at a time not known"),
+        {"start": "with the start of the map's runs"}.get(assessment.history, "at a time not known"),
     )
-    if not math.isnan(found.gear_speed):
-        yield "median gear speed", f"{found.gear_speed:.4g} rad/s"
-    if not math.isnan(found.torque):
-        yield "estimated drive torque", with_prefix(found.torque, "N m", 4)
-    frequencies = [with_prefix(each, "Hz", 4) for each in found.frequencies]  # "-" where nothing stands out
-    if found.reading:
-        yield "record read with", found.reading
+    if not math.isnan(assessment.gear_speed):
+        yield "median gear speed", f"{assessment.gear_speed:.4g} rad/s"
+    if not math.isnan(assessment.torque):
+        yield "estimated drive torque", with_prefix(assessment.torque, "N m", 4)
+    frequencies = [
+        with_prefix(frequency, "Hz", 4) for frequency in assessment.frequencies
+    ]  # "-" where nothing stands out
+    if assessment.reading:
+        yield "record read with", assessment.reading
     yield "impact responses", ", ".join(frequencies) or "none"

@@ -319,14 +319,14 @@ def _image_of(model: MapModel, rings: RingSet, fit: Fit, rate: float, cutoff: fl
         return math.nan
     misfit = np.full(len(fractions), np.inf)
     for shift in _shifts(model, rings):
-        each, folded = _misfit_of_images(
+        chi2, folded = _misfit_of_images(
             np.exp(predicted + shift[:, None, None]),
             rings.frequency[kept],
             rings.uncertainty[kept],
             rate,
             cutoff,
         )
-        misfit = np.minimum(misfit, np.where(folded, each, np.inf).min(axis=1))
+        misfit = np.minimum(misfit, np.where(folded, chi2, np.inf).min(axis=1))
     possible = fit.possible
     misfit[(fractions > possible[0] - _APART) & (fractions < possible[-1] + _APART)] = np.inf
     best = int(misfit.argmin())
@@ -368,12 +368,12 @@ def _misfit_of_images(
         folds = frequency > 0.5 * rate
         shown = np.abs(frequency - rate * np.round(frequency / rate))
         variance = uncertainty**2 + (_IMAGE * frequency) ** 2
-        each = (shown - measured) ** 2 / variance + np.log(np.maximum(1.0, variance / direct))
+        chi2 = (shown - measured) ** 2 / variance + np.log(np.maximum(1.0, variance / direct))
         # a harmonic stands out as an image only where its fundamental is itself out of sight
-        allowed = np.isfinite(each) & (frequency <= cutoff)
+        allowed = np.isfinite(chi2) & (frequency <= cutoff)
         if harmonic > 1:
             allowed &= folds & (ringing > HIGHEST * rate)
-        better = allowed & (each < nearest)
-        nearest = np.where(better, each, nearest)
+        better = allowed & (chi2 < nearest)
+        nearest = np.where(better, chi2, nearest)
         image = np.where(better, folds, image)
     return np.asarray(nearest.sum(axis=-1)), np.asarray(image.any(axis=-1))

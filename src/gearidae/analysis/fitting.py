@@ -186,8 +186,8 @@ def _fit(model: MapModel, rings: RingSet, *, free: bool) -> Fit:
         # the speed goes with the square root of the torque
         torque = likeliest * math.exp(2.0 * spread * deviation)
         torque = float(np.clip(torque, model.torques[0], model.torques[-1]))
-        sequences, own, speeds = model.at_torque(torque)
-        chi2, impacts = _chi_square_of(sequences, rings, np.zeros_like(speeds), own, free=free)
+        sequences, uncertainty, speeds = model.at_torque(torque)
+        chi2, impacts = _chi_square_of(sequences, rings, np.zeros_like(speeds), uncertainty, free=free)
         chi2 = chi2 + (np.log(rings.speed / speeds) / spread) ** 2
         better = chi2 < best.chi2
         best = Fit(
@@ -208,22 +208,22 @@ def _fit_at_known_torque(model: MapModel, rings: RingSet, *, free: bool) -> Fit:
     shift = np.where(np.abs(shift) <= math.log1p(SPEED_RANGE), shift, 0.0)
     drifting = math.copysign(rings.unsteady, float(np.median(shift)) or 1.0)
     uneven = _UNEVEN * abs(float(np.median(shift)) + drifting)
-    own = np.hypot(model.spread[0], math.hypot(uneven, rings.unsteady))
-    chi2, impacts = _chi_square_of(sequences, rings, shift, own, free=free)
+    uncertainty = np.hypot(model.spread[0], math.hypot(uneven, rings.unsteady))
+    chi2, impacts = _chi_square_of(sequences, rings, shift, uncertainty, free=free)
     history = "unknown" if free else "start"
     return Fit(model.fractions, chi2, impacts, history, np.full(len(chi2), np.nan))
 
 
 def _chi_square_of(
-    sequences: Floats, rings: RingSet, shift: Floats, own: Floats, *, free: bool
+    sequences: Floats, rings: RingSet, shift: Floats, uncertainty: Floats, *, free: bool
 ) -> tuple[Floats, int]:
     """Chi-square of every fraction, and the number of impacts compared.
 
-    Impact n is compared with the map's n, or with its n + n0 with the best n0. `own` is the relative uncertainty of
+    Impact n is compared with the map's n, or with its n + n0 with the best n0. `uncertainty` is the relative uncertainty of
     what each fraction predicts for one impact, beside `_MODEL`.
     """
     numbers, x = rings.numbers, np.log(rings.frequency)
-    variance = (rings.uncertainty / rings.frequency) ** 2 + _MODEL**2 + own[:, None] ** 2
+    variance = (rings.uncertainty / rings.frequency) ** 2 + _MODEL**2 + uncertainty[:, None] ** 2
     variance = variance + (_LATE * rings.calibration * (numbers - numbers[0])) ** 2
     if not free:
         kept = numbers + BEFORE < sequences.shape[1]

@@ -75,17 +75,17 @@ def impact_windows(
         If there is no gear speed, or nothing determines the impacts.
     """
     batch = signals(data, gear_teeth=gear_teeth)
-    found = [windows_of(each.forward(), check_width(width)) for each in batch.signals]
+    windows = [windows_of(signal.forward(), check_width(width)) for signal in batch.signals]
     names = {
         "impact_time": "time of the mesh impact",
         "window_start": "start of the impact's window",
         "window_stop": "end of the impact's window",
     }
-    known = all(each.exits is not None for each in batch.signals)
+    known = all(signal.exits is not None for signal in batch.signals)
     return xr.Dataset(
         {
             name: stack(
-                batch, "impact", [row[:, column] for row in found], name, {"units": "s", "long_name": text}
+                batch, "impact", [row[:, column] for row in windows], name, {"units": "s", "long_name": text}
             )
             for column, (name, text) in enumerate(names.items())
         },
@@ -189,8 +189,8 @@ def _comb(signal: Signal, angle: Floats, pitch: float) -> Floats:
     if signal.calibration > 0.0:
         other, higher = bursts.best(1.0 - signal.calibration, 1.0 + signal.calibration)
         spacing = other if higher > score + _CLEARLY else 1.0
-    found = bursts.score(spacing)[1] + spacing * pitch * np.arange(bursts.pitches + 1)
-    return np.asarray(found[found <= angle[-1]], dtype=np.float64)
+    angles = bursts.score(spacing)[1] + spacing * pitch * np.arange(bursts.pitches + 1)
+    return np.asarray(angles[angles <= angle[-1]], dtype=np.float64)
 
 
 def unlike_pitch(signal: Signal) -> float:

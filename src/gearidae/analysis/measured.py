@@ -160,8 +160,8 @@ def _from_netcdf(source: Path, wanted: Wanted) -> xr.Dataset:
         ds = loaded(source)
     except Exception as error:
         raise ValueError(f"is damaged or not a netCDF file ({error})") from error
-    for name, given in wanted.items():
-        asked = given or name
+    for name, variable in wanted.items():
+        asked = variable or name
         if asked not in ds.variables:
             raise ValueError(f"lacks the variable {asked}")
         ds = ds if asked == name else ds.rename({asked: name})
@@ -189,23 +189,27 @@ def _from_frame(frame: Any, wanted: Wanted, step: float | None) -> xr.Dataset:
         f"{name} [s]" if kind == "m" and not split_unit(str(name))[1] else str(name)
         for name, kind in zip(frame.columns, kinds, strict=True)
     ]
-    found = find_columns(names, wanted)
-    return _dataset([frame.iloc[:, each.place] for each in found], found, (), step)
+    columns = find_columns(names, wanted)
+    return _dataset([frame.iloc[:, column.place] for column in columns], columns, (), step)
 
 
-def _from_text(source: Path, wanted: Wanted, given: Mapping[str, Any], step: float | None) -> xr.Dataset:
+def _from_text(source: Path, wanted: Wanted, reading: Mapping[str, Any], step: float | None) -> xr.Dataset:
     try:
-        table = _opened(source, wanted, given)
-        found = find_columns(table.headings, wanted)
+        table = _opened(source, wanted, reading)
+        columns = find_columns(table.headings, wanted)
     except ValueError:
         if wanted.get("time", "given") is not None:
             raise
         wanted = {"gear_speed": None}
-        table = _opened(source, wanted, given)
+        table = _opened(source, wanted, reading)
         if table.clock is None:
             raise
-        found = find_columns(table.headings, wanted)
-    numbers, said, start = table.numbers([each.place for each in found], holes=True), table.recognised, 0.0
+        columns = find_columns(table.headings, wanted)
+    numbers, said, start = (
+        table.numbers([column.place for column in columns], holes=True),
+        table.recognised,
+        0.0,
+    )
     if step is None and "time" not in wanted:
         if table.clock is None:
             raise ValueError(
@@ -213,41 +217,44 @@ def _from_text(source: Path, wanted: Wanted, given: Mapping[str, Any], step: flo
             )
         start, step = table.clock
         said = (*said, f"samples {with_prefix(step, 's')} apart as it states")
-    return _dataset(list(numbers.T), found, said, step, start)
+    return _dataset(list(numbers.T), columns, said, step, start)
 
 
-def _opened(source: Path, wanted: Wanted, given: Mapping[str, Any]) -> TextTable:
+def _opened(source: Path, wanted: Wanted, reading: Mapping[str, Any]) -> TextTable:
     return open_table(
         source,
         largest=_LARGEST,
         names=lambda headings: has_columns(headings, wanted),
-        delimiter=_character(given["delimiter"]),
-        decimal=_decimal(given["decimal"]),
-        skip=None if given["skip"] is None else whole("skip", given["skip"], 0),
+        delimiter=_character(reading["delimiter"]),
+        decimal=_decimal(reading["decimal"]),
+        skip=None if reading["skip"] is None else whole("skip", reading["skip"], 0),
         unit_row=True,
         places=numbered_places(wanted),
     )
 
 
 def _dataset(
-    columns: Sequence[Any],
-    found: Sequence[Column],
+    arrays: Sequence[Any],
+    columns: Sequence[Column],
     said: Sequence[str],
     step: float | None,
     start: float = 0.0,
 ) -> xr.Dataset:
     """Put columns into SI units; say which they are where their names do not."""
     read = {}
-    for values, each in zip(columns, found, strict=True):
+    for array, column in zip(arrays, columns, strict=True):
         try:
-            read[each.meaning] = numbers_of(
-                values, "rad/s" if each.meaning == "gear_speed" else "s", each.unit
+            read[column.meaning] = numbers_of(
+                array, "rad/s" if column.meaning == "gear_speed" else "s", column.unit
             )
         except ValueError as error:
-            raise ValueError(f"column {each.heading!r}: {error}") from None
+            raise ValueError(f"column {column.heading!r}: {error}") from None
     if step is not None:
         read["time"] = start + step * np.arange(len(read["gear_speed"]), dtype=np.float64)
-    said = [*said, *(f"{each.heading!r} taken for the {each.meaning}" for each in found if each.recognised)]
+    said = [
+        *said,
+        *(f"{column.heading!r} taken for the {column.meaning}" for column in columns if column.recognised),
+    ]
     return xr.Dataset(
         {"gear_speed": ("time", read["gear_speed"], {"units": _SI["gear_speed"]})},
         coords={"time": ("time", read["time"], {"units": "s"})},
@@ -285,12 +292,12 @@ def _filled(values: Floats, most: int) -> tuple[Floats, int]:
 def _character(delimiter: str | None) -> str | None:
     if delimiter is None:
         return None
-    found = _DELIMITERS.get(delimiter.lower(), delimiter) if isinstance(delimiter, str) else "?"
-    if len(found) > 1 or found.isalnum() or found in ('"', ".", "?", "#", "\n", "\r"):
+    character = _DELIMITERS.get(delimiter.lower(), delimiter) if isinstance(delimiter, str) else "?"
+    if len(character) > 1 or character.isalnum() or character in ('"', ".", "?", "#", "\n", "\r"):
         raise SceneError(
             "delimiter", shorten(delimiter), "must be one character, such as ';', or tab or blanks"
         )
-    return found
+    return character
 
 
 def _decimal(decimal: str | None) -> str | None:

@@ -100,10 +100,12 @@ def _given(headings: Sequence[str], meaning: str, name: str) -> Column:
     if place is None:
         raise ValueError(f"has no column {name!r}, or more than one, among {listed(headings)}")
     heading, unit = headings[place] if headings else f"column {place + 1}", split_unit(name)[1]
-    own = split_unit(heading)[1]
-    if own and unit and own != unit and _fits(_spelt(own), _UNITS[meaning]):  # that of a voltage is replaced
+    heading_unit = split_unit(heading)[1]
+    if (
+        heading_unit and unit and heading_unit != unit and _fits(_spelt(heading_unit), _UNITS[meaning])
+    ):  # that of a voltage is replaced
         raise ValueError(f"the column {heading!r} is not in {unit}: leave the unit out")
-    if not (unit := unit or own):
+    if not (unit := unit or heading_unit):
         raise ValueError(f"{name!r} states no unit: give it in brackets, as in {name + ' [ms]'!r}")
     return Column(meaning, heading, place, _spelt(unit))
 

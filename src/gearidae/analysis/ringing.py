@@ -161,7 +161,7 @@ def impact_frequencies(
         If there is no gear speed, or nothing determines the impacts.
     """
     batch = signals(data, gear_teeth=gear_teeth)
-    found = [rings_of(each.forward(), check_width(width)) for each in batch.signals]
+    responses = [rings_of(signal.forward(), check_width(width)) for signal in batch.signals]
     columns: dict[str, tuple[str, dict[str, Any]]] = {
         "frequency": ("frequency of the impact response", {"units": "Hz"}),
         "uncertainty": ("standard uncertainty of the frequency", {"units": "Hz"}),
@@ -172,13 +172,13 @@ def impact_frequencies(
             "impact_time" if name == "time" else name: stack(
                 batch,
                 "impact",
-                [np.array([getattr(ring, name) for ring in rings]) for rings in found],
+                [np.array([getattr(ring, name) for ring in rings]) for rings in responses],
                 name,
                 {"long_name": text, **attrs},
             )
             for name, (text, attrs) in columns.items()
         },
-        coords={"impact": _numbers(max(len(rings) for rings in found))},
+        coords={"impact": _numbers(max(len(rings) for rings in responses))},
         attrs={
             "window": "hann",
             "lead": LEAD,
@@ -211,10 +211,10 @@ def impact_spectrum(
         If there is no gear speed, or nothing determines the impacts.
     """
     batch = signals(data, gear_teeth=gear_teeth)
-    windows = [windows_of(each.forward(), check_width(width)) for each in batch.signals]
+    windows = [windows_of(signal.forward(), check_width(width)) for signal in batch.signals]
     pieces = [
-        [piece_of(each, start, stop) for _, start, stop in rows]
-        for each, rows in zip(batch.signals, windows, strict=True)
+        [piece_of(signal, start, stop) for _, start, stop in rows]
+        for signal, rows in zip(batch.signals, windows, strict=True)
     ]
     longest = max((len(piece) for row in pieces for piece in row), default=0)
     size = _padded(max(longest, FEWEST_SAMPLES), 4)
@@ -269,7 +269,7 @@ def rings_of(signal: Signal, width: float) -> list[Ring]:
     for number, ring in enumerate(rings):
         if ring.frequency > highest or expected > highest:
             # from here on the ringing is faster than the sampling shows; what is seen are images
-            return [*rings[:number], *(Ring(each.time) for each in rings[number:])]
+            return [*rings[:number], *(Ring(later.time) for later in rings[number:])]
         if math.isfinite(ring.frequency):
             growth = ring.frequency / before if before < ring.frequency else 1.0
             before, expected = ring.frequency, ring.frequency * growth

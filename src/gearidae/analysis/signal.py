@@ -298,9 +298,9 @@ def _exits_of(
 
     def exits(place: tuple[int, ...]) -> Floats | None:
         run = array.isel(dict(zip(dims, place, strict=True)))
-        own = leaving.copy()
+        of_run = leaving.copy()
         for key, label in labels.items():
-            own &= label == run[key].values.item()
-        return np.asarray(time[own], dtype=np.float64)
+            of_run &= label == run[key].values.item()
+        return np.asarray(time[of_run], dtype=np.float64)
 
     return exits

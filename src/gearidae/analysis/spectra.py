@@ -84,11 +84,11 @@ def power_spectrum(
     long = padding * size
     rows = [
         scipy.signal.welch(
-            each.values, rate, window=taper, noverlap=size // 2, nfft=long, detrend="constant"
+            signal.values, rate, window=taper, noverlap=size // 2, nfft=long, detrend="constant"
         )[1]
-        if len(each.values) >= size
+        if len(signal.values) >= size
         else np.full(long // 2 + 1, np.nan)
-        for each in batch.signals
+        for signal in batch.signals
     ]
     spectrum = stack(
         batch, "frequency", rows, f"{batch.name}_power_spectrum", _attributes(batch, window, size, 0.5)
@@ -143,13 +143,13 @@ def spectrogram(
     warn_of_aliasing(data, first.rate)
     shared = min(size - 1, round(overlap * size))
     taper = _taper(window, size)
-    longest = max(len(each.values) for each in batch.signals)
+    longest = max(len(signal.values) for signal in batch.signals)
     columns = 1 + (longest - size) // (size - shared)
     made = np.full((len(batch.signals), size // 2 + 1, columns), np.nan)
-    for target, each in zip(made, batch.signals, strict=True):
-        if len(each.values) >= size:
+    for target, signal in zip(made, batch.signals, strict=True):
+        if len(signal.values) >= size:
             density = scipy.signal.spectrogram(
-                each.values, first.rate, window=taper, noverlap=shared, detrend="constant", mode="psd"
+                signal.values, first.rate, window=taper, noverlap=shared, detrend="constant", mode="psd"
             )[2]
             target[:, : density.shape[1]] = density
     middle = first.start + first.interval * (0.5 * size + (size - shared) * np.arange(columns))
@@ -169,14 +169,14 @@ def spectrogram(
 def _segment(batch: Batch, length: float | None, part: float) -> int:
     """Samples per segment."""
     interval = batch.signals[0].interval
-    longest = max(len(each.values) for each in batch.signals)
+    longest = max(len(signal.values) for signal in batch.signals)
     size = max(FEWEST_SAMPLES, int(part * longest)) if length is None else round(length / interval)
     if size == longest + 1:  # n samples span n - 1 intervals: "the whole record" may mean either
         size = longest
     if not FEWEST_SAMPLES <= size <= longest:
-        given = f"({longest} samples)" if length is None else f"{length:g} s"
+        shown = f"({longest} samples)" if length is None else f"{length:g} s"
         shortest, whole = FEWEST_SAMPLES * interval, longest * interval
-        raise SceneError("segment", given, f"must lie in {shortest:.4g}..{whole:.4g} s, the record's length")
+        raise SceneError("segment", shown, f"must lie in {shortest:.4g}..{whole:.4g} s, the record's length")
     return size
 
 

@@ -68,7 +68,9 @@ def complete_scene(scene: dict[str, Any]) -> None:
 
 def _names_file(table: object) -> bool:
     """Whether a table of a scene would read a file; archives hold numbers, and must not make a reader open others."""
-    return isinstance(table, dict) and any(isinstance(one, dict) and "file" in one for one in table.values())
+    return isinstance(table, dict) and any(
+        isinstance(entry, dict) and "file" in entry for entry in table.values()
+    )
 
 
 def _table(text: object) -> dict[str, Any] | None:

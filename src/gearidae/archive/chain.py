@@ -45,10 +45,12 @@ def chained(parts: Sequence[xr.Dataset]) -> xr.Dataset:
     scenes = [run_scene(part) for part in parts]
     singles = [single_run(part) for part in parts]
     for number, scene in enumerate(scenes[1:], 1):
-        found = first_difference(scenes[0].to_dict(), scene.to_dict(), ignored=MAY_CHANGE)
-        if found is not None:
+        difference = first_difference(scenes[0].to_dict(), scene.to_dict(), ignored=MAY_CHANGE)
+        if difference is not None:
             raise SceneError(
-                found[0], found[2], f"of {part_name(number)} must be {found[1]}, as in the first"
+                difference[0],
+                difference[2],
+                f"of {part_name(number)} must be {difference[1]}, as in the first",
             )
     _refuse_other_samples(singles)
     cut = [singles[0]]
@@ -58,15 +60,17 @@ def chained(parts: Sequence[xr.Dataset]) -> xr.Dataset:
     last = singles[-1]
     variables = {
         str(name): (
-            each.dims,
-            np.concatenate([part[name].values for part in cut]) if each.dims[:1] in _GROWING else each.values,
-            each.attrs,
+            variable.dims,
+            np.concatenate([part[name].values for part in cut])
+            if variable.dims[:1] in _GROWING
+            else variable.values,
+            variable.attrs,
         )
-        for name, each in last.variables.items()
+        for name, variable in last.variables.items()
     }
     ds = xr.Dataset(
-        {name: each for name, each in variables.items() if name not in last.coords},
-        coords={name: each for name, each in variables.items() if name in last.coords},
+        {name: variable for name, variable in variables.items() if name not in last.coords},
+        coords={name: variable for name, variable in variables.items() if name in last.coords},
         attrs=last.attrs,
     )
     for name in ("start_time", "parent"):

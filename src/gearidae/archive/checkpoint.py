@@ -14,7 +14,7 @@ from gearidae.archive.commits import Commit, with_lengths
 from gearidae.archive.store import Store
 from gearidae.records import COUNTERS, EnergyBalance, Extremes, Statistics, Words
 
-_COUNTERS: Final = tuple(each.name for each in COUNTERS)
+_COUNTERS: Final = tuple(quantity.name for quantity in COUNTERS)
 _PREFIX: Final = "checkpoint_"
 RUN: Final = "run"
 """Attribute of an archive by which its run's checkpoint is found."""
@@ -88,10 +88,10 @@ class Checkpoint:
     def newest(cls, archive: Path, run: str) -> Checkpoint | None:
         """Read the newest checkpoint of a run; None if there is none, or no longer a whole one."""
         try:
-            found = Store(archive).take(_key(run))
-            if found is None:
+            entry = Store(archive).take(_key(run))
+            if entry is None:
                 return None
-            header, tables = found
+            header, tables = entry
             statistics, extremes = Statistics(**header.pop("statistics")), header.pop("extremes")
             balance = header.pop("balance")
             return cls(

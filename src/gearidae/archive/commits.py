@@ -114,13 +114,13 @@ def check_bytes(path: Path) -> list[Commit]:
             return []
         file.seek(-min(2 * LENGTH, path.stat().st_size), 2)
         tail = file.read()
-        commits = [one for text in (tail[:LENGTH], tail[LENGTH:]) if (one := _read(text)) is not None]
+        commits = [commit for text in (tail[:LENGTH], tail[LENGTH:]) if (commit := _read(text)) is not None]
         if commits:
             file.seek(0)
             length, was = commits[0].structure
             if zlib.crc32(file.read(length)) != was:
                 raise ValueError("its structure has been altered")
-            return sorted(commits, key=lambda one: -one.number)
+            return sorted(commits, key=lambda commit: -commit.number)
         with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
             if content.find(RECORDS.encode()) >= 0:
                 raise ValueError("its end is missing or altered")
@@ -131,10 +131,10 @@ def check_bytes(path: Path) -> list[Commit]:
 
 def checksum_of(variable: Any, length: int, before: int = 0) -> int:
     """Checksum of the first values of a variable in an open file, after those of another checksum."""
-    found = before
+    checksum = before
     for start in range(0, length, COPIED):
-        found = _checksum(variable[start : min(start + COPIED, length)], found)
-    return found
+        checksum = _checksum(variable[start : min(start + COPIED, length)], checksum)
+    return checksum
 
 
 def _checksum(values: NDArray[Any], before: int) -> int:
@@ -144,11 +144,11 @@ def _checksum(values: NDArray[Any], before: int) -> int:
 
 def constants_of(file: Any) -> int:
     """Checksum of all values that are there from the first."""
-    found = 0
+    checksum = 0
     for name, variable in file.variables.items():
         if not {*COUNTS} & set(variable.dimensions) and name not in (RECORDS, *COUNTS.values()):
-            found = _checksum(variable[...], found)
-    return checksum_of(file["time"], file["time"].size, found) if "time" in file.variables else found
+            checksum = _checksum(variable[...], checksum)
+    return checksum_of(file["time"], file["time"].size, checksum) if "time" in file.variables else checksum
 
 
 def with_lengths(fields: dict[str, Any]) -> dict[str, Any]:

@@ -76,13 +76,13 @@ def concat(datasets: Iterable[xr.Dataset] | Mapping[str, xr.Dataset], dim: str) 
         axes = [_differing(parts)]
     else:
         axes = _axes(parts, _key_of(parts, dim))
-    found = [_Run(run, single_run(run)) for part in parts for _, run in runs(part)]
-    scenes = [Scene.from_dict(scene_of(each.single)) for each in found]
+    members = [_Run(run, single_run(run)) for part in parts for _, run in runs(part)]
+    scenes = [Scene.from_dict(scene_of(member.single)) for member in members]
     order = _order(axes, scenes)
-    scenes, found = [scenes[place] for place in order], [found[place] for place in order]
+    scenes, members = [scenes[place] for place in order], [members[place] for place in order]
     if dim != "name":
         _refuse_differences(scenes, [key for axis in axes for key in axis])
-    _refuse_other_samples(found)
+    _refuse_other_samples(members)
     keep = kept_in(parts[0].attrs, scenes[0])
     for number, part in enumerate(parts):
         if part.attrs.get("keep") != parts[0].attrs.get("keep"):
@@ -90,8 +90,8 @@ def concat(datasets: Iterable[xr.Dataset] | Mapping[str, xr.Dataset], dim: str) 
                 "keep", part.attrs.get("keep"), f"of {part_name(number)} must be that of the first"
             )
     base = Scene.from_dict(scene_of(parts[0]))
-    ds = stack(base, axes, scenes, [_solution(each.single) for each in found], keep=keep)
-    ds = _with_exposures(_with_numbers(ds, parts, found), base, [each.picked for each in found])
+    ds = stack(base, axes, scenes, [_solution(member.single) for member in members], keep=keep)
+    ds = _with_exposures(_with_numbers(ds, parts, members), base, [member.picked for member in members])
     return ds.assign_attrs(
         history=history_of(parts, f"joined {len(parts)} datasets along {dim}"), **software_of(parts)
     )
@@ -125,13 +125,14 @@ def _differing(parts: Sequence[xr.Dataset]) -> Axis:
             raise SceneError("name", name, "stands in the datasets twice: name them, as in {name: dataset}")
     others: list[str] = []
     for scene in scenes[1:]:
-        while found := first_difference(scenes[0].to_dict(), scene.to_dict(), (*axis, *others)):
-            values = [scene_value(each, found[0]) for each in scenes]
-            kinds = {type(each) for each in values}
+        while difference := first_difference(scenes[0].to_dict(), scene.to_dict(), (*axis, *others)):
+            key = difference[0]
+            values = [scene_value(entry, key) for entry in scenes]
+            kinds = {type(value) for value in values}
             if kinds <= {int, float} or kinds == {str}:
-                axis[found[0]] = values
+                axis[key] = values
             else:
-                others.append(found[0])
+                others.append(key)
     return axis
 
 
@@ -184,11 +185,11 @@ def _led(axis: Axis, dim: str, swept: dict[str, Any]) -> Axis:
 
 def _axes(parts: Sequence[xr.Dataset], key: str) -> list[Axis]:
     """Axes of the whole: those of the parts, of which the one of `key` is walked from part to part."""
-    own = [_own_axes(part) for part in parts]
-    with_key = [next((axis for axis in axes if key in axis), None) for axes in own]
-    rest = [[axis for axis in axes if key not in axis] for axes in own]
+    part_axes = [_own_axes(part) for part in parts]
+    with_key = [next((axis for axis in axes if key in axis), None) for axes in part_axes]
+    rest = [[axis for axis in axes if key not in axis] for axes in part_axes]
     for number, axes in enumerate(rest):
-        mine, first = ({k: v for axis in each for k, v in axis.items()} for each in (axes, rest[0]))
+        mine, first = ({k: v for axis in group for k, v in axis.items()} for group in (axes, rest[0]))
         for other in {**first, **mine}:
             if mine.get(other) != first.get(other):
                 shown = mine.get(other, "(not swept)")
@@ -197,17 +198,17 @@ def _axes(parts: Sequence[xr.Dataset], key: str) -> list[Axis]:
                 )
     together = {tuple(axis) if axis else (key,) for axis in with_key}
     if len(together) > 1:
-        keys = sorted({each for one in together for each in one} - {key})
+        keys = sorted({name for names in together for name in names} - {key})
         raise SceneError(keys[0], f"zipped with {key}", "must be so in all datasets")
-    joined: Axis = {each: [] for each in together.pop()}
+    joined: Axis = {name: [] for name in together.pop()}
     for part, axis in zip(parts, with_key, strict=True):
-        for each, values in joined.items():
-            values.extend(axis[each] if axis else [_value(single_run(part) if not rest[0] else part, each)])
+        for name, values in joined.items():
+            values.extend(axis[name] if axis else [_value(single_run(part) if not rest[0] else part, name)])
     leader = next(iter(joined))
     for number, value in enumerate(joined[leader]):
         if value in joined[leader][:number]:
             raise SceneError(leader, value, "stands in the datasets twice")
-    place = next((number for number, axis in enumerate(own[0]) if key in axis), 0)
+    place = next((number for number, axis in enumerate(part_axes[0]) if key in axis), 0)
     return [*rest[0][:place], joined, *rest[0][place:]]
 
 
@@ -230,24 +231,25 @@ def _order(axes: Sequence[Axis], scenes: Sequence[Scene]) -> list[int]:
 def _refuse_differences(scenes: Sequence[Scene], swept: Sequence[str]) -> None:
     """Name the first key in which runs differ that is not swept."""
     for scene in scenes[1:]:
-        found = first_difference(scenes[0].to_dict(), scene.to_dict(), ignored=("name", *swept))
-        if found is not None:
-            key, ours, theirs = found
+        difference = first_difference(scenes[0].to_dict(), scene.to_dict(), ignored=("name", *swept))
+        if difference is not None:
+            key, ours, theirs = difference
             raise SceneError(
                 key, theirs, f"is {ours} in the first run: runs may differ in {', '.join(swept)} only"
             )
 
 
-def _refuse_other_samples(found: Sequence[_Run]) -> None:
+def _refuse_other_samples(members: Sequence[_Run]) -> None:
     """Refuse runs that do not share one time axis, as far as each of them goes, or have other variables along it."""
-    for number, run in enumerate(found):
+    for number, run in enumerate(members):
         ours, theirs = (
-            {n for n, one in each.single.data_vars.items() if "time" in one.dims} for each in (found[0], run)
+            {n for n, variable in member.single.data_vars.items() if "time" in variable.dims}
+            for member in (members[0], run)
         )
         if other := ours ^ theirs:
             shown = ", ".join(sorted(map(str, other)))
             raise SceneError(part_name(number), shown, "must be sampled in all runs, or in none")
-    times = [each.single["time"].values for each in found if "time" in each.single.dims]
+    times = [member.single["time"].values for member in members if "time" in member.single.dims]
     longest = max(times, key=len, default=np.empty(0))
     for time in times:
         if not np.array_equal(time, longest[: len(time)]):
@@ -260,7 +262,7 @@ def _refuse_other_samples(found: Sequence[_Run]) -> None:
 
 def _solution(run: xr.Dataset) -> Solution:
     """Turn a single run's dataset back into what it was made from, as far as `stack` needs it."""
-    samples = {str(n): each.values for n, each in run.data_vars.items() if each.dims == ("time",)}
+    samples = {str(n): variable.values for n, variable in run.data_vars.items() if variable.dims == ("time",)}
     rows: dict[str, Any] = {kind.field: rows_from(run, kind) for kind in ROWS}
     numbers = {name: _number(run, name) for name in RUN if name not in ("status", "message")}
     statistics = Statistics(**numbers, skipped=json.loads(run.attrs.get("skipped", "{}")))
@@ -283,7 +285,7 @@ def _number(run: xr.Dataset, name: str) -> Any:
         return "" if RUN[name].dtype is np.str_ else 0
 
 
-def _with_numbers(ds: xr.Dataset, parts: Sequence[xr.Dataset], found: Sequence[_Run]) -> xr.Dataset:
+def _with_numbers(ds: xr.Dataset, parts: Sequence[xr.Dataset], members: Sequence[_Run]) -> xr.Dataset:
     """Put in what is taken from the runs' datasets as it is: extremes, energy balances, verdicts, and totals."""
     dims, shape = ds["status"].dims, ds["status"].shape
     for name, variable in {
@@ -292,14 +294,14 @@ def _with_numbers(ds: xr.Dataset, parts: Sequence[xr.Dataset], found: Sequence[_
         STANDSTILL_LIST.name: STANDSTILL_LIST,
         **VERDICT,
     }.items():
-        known = [name in each.picked and not each.picked[name].dims for each in found]
+        known = [name in member.picked and not member.picked[name].dims for member in members]
         if all(known) or (name in ENERGY_TOTALS and any(known)):
             numbers = [
-                each.picked[name].values.item() if has else math.nan
-                for each, has in zip(found, known, strict=True)
+                member.picked[name].values.item() if has else math.nan
+                for member, has in zip(members, known, strict=True)
             ]
             values = np.array(numbers, dtype=variable.dtype)
-            ds[name] = (dims, values.reshape(shape), found[known.index(True)].picked[name].attrs)
+            ds[name] = (dims, values.reshape(shape), members[known.index(True)].picked[name].attrs)
     for name, variable in RUN.items():
         if name not in ds and name in ds.attrs:  # of runs that have not kept theirs the parts know the sum
             entries = [part.attrs[name] for part in parts]

@@ -157,7 +157,7 @@ def combine(
     if samples is None:
         longest = max(len(solution.time) for solution in solutions)
         samples = SampleTable(keep.columns(scene), len(solutions), longest)
-        solutions = [samples.take(number, each) for number, each in enumerate(solutions)]
+        solutions = [samples.take(number, solution) for number, solution in enumerate(solutions)]
     variables: dict[Hashable, Any] = {
         name: ((*dims, "time"), table.reshape(*shape, -1), SAMPLES[name].attributes)
         for name, table in samples.columns().items()
@@ -170,9 +170,9 @@ def combine(
     for name, (variable, values) in of_runs.items():
         if keep.holds(name):
             variables[name] = (dims, values.reshape(shape), variable.attributes)
-    variables |= {name: each for name, each in totals.items() if keep.holds(str(name))}
+    variables |= {name: entry for name, entry in totals.items() if keep.holds(str(name))}
     exposures = exposure_variables(scene, scenes, solutions, dims, shape)
-    exposures = {name: each for name, each in exposures.items() if keep.holds(str(name))}
+    exposures = {name: entry for name, entry in exposures.items() if keep.holds(str(name))}
     variables |= exposures
 
     coords: dict[Hashable, Any] = {}
@@ -203,27 +203,27 @@ def _of_runs(
     scenes: Sequence[Scene], solutions: Sequence[Solution], keep: Keep
 ) -> dict[str, tuple[Variable, NDArray[Any]]]:
     """One value a run of what is kept: how it ended, its statistics and its input."""
-    found: dict[str, tuple[Variable, NDArray[Any]]] = {}
+    columns: dict[str, tuple[Variable, NDArray[Any]]] = {}
     for name, variable in RUN.items():
         if not keep.holds(name):
             continue
         source = [s if name in ("status", "message") else s.statistics for s in solutions]
-        found[name] = variable, np.array([getattr(each, name) for each in source], dtype=variable.dtype)
-    found["reached"] = OF_SWEPT_RUN["reached"], np.array([reached(solution) for solution in solutions])
-    contacts = [_contacts(each, solution) for each, solution in zip(scenes, solutions, strict=True)]
+        columns[name] = variable, np.array([getattr(holder, name) for holder in source], dtype=variable.dtype)
+    columns["reached"] = OF_SWEPT_RUN["reached"], np.array([reached(solution) for solution in solutions])
+    contacts = [_contacts(scene, solution) for scene, solution in zip(scenes, solutions, strict=True)]
     for variable in CONTACT:
         if keep.holds(variable.name):
-            found[variable.name] = variable, np.array([each[variable.name] for each in contacts])
+            columns[variable.name] = variable, np.array([contact[variable.name] for contact in contacts])
     if keep.holds("skipped"):
         skipped = [json.dumps(solution.statistics.skipped, default=int) for solution in solutions]
-        found["skipped"] = OF_SWEPT_RUN["skipped"], np.array(skipped)
+        columns["skipped"] = OF_SWEPT_RUN["skipped"], np.array(skipped)
     if keep.holds("scene"):
         inputs = np.empty(
             len(scenes), dtype=object
         )  # in an array of text every entry is as long as the longest
-        inputs[:] = [json.dumps(each.to_dict(), allow_nan=False) for each in scenes]
-        found["scene"] = OF_SWEPT_RUN["scene"], inputs
-    return found
+        inputs[:] = [json.dumps(scene.to_dict(), allow_nan=False) for scene in scenes]
+        columns["scene"] = OF_SWEPT_RUN["scene"], inputs
+    return columns
 
 
 def dimension_names(keys: Sequence[str] | Mapping[str, Any]) -> dict[str, str]:
@@ -283,10 +283,10 @@ def _key_attributes(key: str) -> dict[str, Any]:
 def _totals(solutions: Sequence[Solution]) -> dict[str, Any]:
     """Solver statistics added up over the runs, as attributes."""
     statistics = [solution.statistics for solution in solutions]
-    totals: dict[str, Any] = {name: sum(getattr(each, name) for each in statistics) for name in _COUNTERS}
-    totals["wall_time"] = math.fsum(each.wall_time for each in statistics)
+    totals: dict[str, Any] = {name: sum(getattr(counts, name) for counts in statistics) for name in _COUNTERS}
+    totals["wall_time"] = math.fsum(counts.wall_time for counts in statistics)
     for name in ("backend", "method"):
-        totals[name] = ", ".join(sorted({getattr(each, name) for each in statistics} - {""}))
+        totals[name] = ", ".join(sorted({getattr(counts, name) for counts in statistics} - {""}))
     if len(statistics) == 1:
         totals["skipped"] = json.dumps(statistics[0].skipped, default=int)
     return totals

@@ -76,7 +76,7 @@ def exposure_coordinates(scene: Scene) -> dict[Hashable, Any]:
         "place": 0.5 * (edges[1:] + edges[:-1]),
         "flank_area": flank_areas(scene),
         "tooth": np.arange(scene.gears.pinion_teeth),
-        "material": np.array([each.name for each in scene.materials()]),
+        "material": np.array([material.name for material in scene.materials()]),
         "flank": np.array(FLANKS),
     }
     return {name: (PLACES[name].dims, value, PLACES[name].attributes) for name, value in values.items()}
@@ -109,15 +109,21 @@ def exposure_variables(
         or the runs do not have the same places.
     """
     places = {
-        (each.run.exposures, each.gears and each.gears.pinion_teeth, len(each.materials()))
-        for each in (scene, *scenes)
+        (member.run.exposures, member.gears and member.gears.pinion_teeth, len(member.materials()))
+        for member in (scene, *scenes)
     }
-    if scene.run.exposures == 0 or len(places) > 1 or all(each.extremes is None for each in solutions):
+    if (
+        scene.run.exposures == 0
+        or len(places) > 1
+        or all(solution.extremes is None for solution in solutions)
+    ):
         return {}
-    parts = [_per_area(require_gears(own), each) for own, each in zip(scenes, solutions, strict=True)]
+    parts = [
+        _per_area(require_gears(member), solution) for member, solution in zip(scenes, solutions, strict=True)
+    ]
     made: dict[Hashable, Any] = {}
     for name, variable in EXPOSURES.items():
-        if name == "friction_work" and not any(has_flank_friction(each) for each in scenes):
+        if name == "friction_work" and not any(has_flank_friction(member) for member in scenes):
             continue
         values = np.stack([part[name] for part in parts])
         made[name] = ((*dims, *variable.dims), values.reshape(*shape, *values.shape[1:]), variable.attributes)
@@ -140,7 +146,9 @@ def _per_area(scene: GearScene, solution: Solution) -> dict[str, Floats]:
     by_material = table.swapaxes(1, 2)
     contacts = by_material[:, rows.contacts : rows.contacts + len(materials)] / area
     lost = by_material[:, rows.adhesion : rows.adhesion + len(materials)] / area
-    shares = np.array([1.0 if scene.coating.by_place else each.share for each in materials])[:, None, None]
+    shares = np.array([1.0 if scene.coating.by_place else material.share for material in materials])[
+        :, None, None
+    ]
     if scene.contact.is_discrete:
         # each asperity has been counted, in places that its material covers
         shares = _shares_by_place(scene)
@@ -173,6 +181,6 @@ def _shares_by_place(scene: GearScene) -> Floats:
         fraction_at(gear, np.arange(len(gear))[:, None], along).reshape(-1, meets, along.size).mean(axis=0)
     )
     second = second[(teeth + flanks[:, None]) % meets]
-    found = interface_shares(scene.coating.pairing, np.broadcast_to(first, second.shape), second)
-    shares = np.stack([found[each.name] for each in scene.materials()], axis=1)
+    parts = interface_shares(scene.coating.pairing, np.broadcast_to(first, second.shape), second)
+    shares = np.stack([parts[material.name] for material in scene.materials()], axis=1)
     return np.asarray(shares.reshape(*shares.shape[:-1], places, _POINTS).mean(axis=-1))

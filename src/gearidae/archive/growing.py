@@ -249,7 +249,7 @@ class GrowingArchive:
     def _row_names(self, *kinds: type[Rows]) -> list[str]:
         """Variables of some kinds of rows, or of all."""
         dims = [(kind.dim,) for kind in kinds or self._kinds]
-        return [str(name) for name, each in self._template.data_vars.items() if each.dims in dims]
+        return [str(name) for name, variable in self._template.data_vars.items() if variable.dims in dims]
 
     def _write(self, name: str, first: int, values: NDArray[Any]) -> None:
         if values.size:

@@ -126,7 +126,7 @@ def read_keep(keep: Iterable[str] | str | None, scene: Scene) -> Keep:
     members: dict[str, tuple[str, ...]] = {
         "verdict": tuple(VERDICT),
         "extremes": (*extremes, *([] if scene.roller is not None else [STANDSTILL_LIST.name])),
-        "statistics": (*RUN, *(each.name for each in CONTACT)),
+        "statistics": (*RUN, *(variable.name for variable in CONTACT)),
         "energy_balance": tuple(ENERGY_TOTALS),
         "scene": ("scene",),
         "exposures": tuple(EXPOSURES),

@@ -168,12 +168,14 @@ def _described(store: CheckedStore, source: Path) -> xr.Dataset:
 
 def _check_layout(ds: xr.Dataset, path: str | os.PathLike[str]) -> None:
     """Refuse what this version of gearidae did not write or could misread."""
-    found = ds.attrs.get("schema_version")
-    if found is None or "scene" not in ds.attrs:
+    version = ds.attrs.get("schema_version")
+    if version is None or "scene" not in ds.attrs:
         raise SceneError("archive", path, "is not an archive of gearidae (no scene, no schema_version)")
-    if not isinstance(found, int | np.integer) or found != SCHEMA_VERSION:
+    if not isinstance(version, int | np.integer) or version != SCHEMA_VERSION:
         raise SceneError(
-            "archive", path, f"has schema_version {found!s}: this version of gearidae reads {SCHEMA_VERSION}"
+            "archive",
+            path,
+            f"has schema_version {version!s}: this version of gearidae reads {SCHEMA_VERSION}",
         )
     if "checkpoint" in ds.variables:
         raise SceneError(
@@ -194,7 +196,7 @@ def _check_layout(ds: xr.Dataset, path: str | os.PathLike[str]) -> None:
 
 def _expected(ds: xr.Dataset, scene: dict[str, Any]) -> tuple[str, ...]:
     """Variables that an archive of any version has at least."""
-    later = {one.name for one in (*GEAR_SAMPLES, *ROLLER_SAMPLES) if one.since}
+    later = {column.name for column in (*GEAR_SAMPLES, *ROLLER_SAMPLES) if column.since}
     sampled = tuple(name for name in sampled_columns(roller="roller" in scene) if name not in later)
     rows = tuple(name for kind in kinds_in(ds) for name in needed(kind))  # a user may drop them
     if "keep" not in ds.attrs:
@@ -262,7 +264,7 @@ def converted(ds: xr.Dataset) -> xr.Dataset:
         samples = reached(ds["time"])
         last = float(ds["time"][samples - 1]) if samples else float(ds.attrs["t_end"])
         ds["reached"] = ((), float(kept.get("time", last)), OF_SWEPT_RUN["reached"].attributes)
-    later = {name for name, each in TERMS.items() if each.since}
+    later = {name for name, term in TERMS.items() if term.since}
     for name in ENERGY_BALANCE if kept else ():
         ds[name] = (
             (),

@@ -97,8 +97,8 @@ def _summary(scene: Scene, swept: tuple[str, ...]) -> str:
             "Simulated impact of a rough roller, partly covered by a self-assembled monolayer, on a plane: "
             "height, speed and contact force at uniform times, and every contact event."
         )
-    each = f" One run for each combination of {', '.join(swept)}." if swept else ""
-    return f"{what}{each} The attribute 'scene' holds the complete input in SI units."
+    sweep = f" One run for each combination of {', '.join(swept)}." if swept else ""
+    return f"{what}{sweep} The attribute 'scene' holds the complete input in SI units."
 
 
 @cache

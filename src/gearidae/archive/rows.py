@@ -51,7 +51,7 @@ def archived(rows: Rows, teeth: int, fraction: float) -> dict[str, NDArray[Any]]
     values = {name: getattr(rows, name) for name in rows.columns}
     values["tooth"] = np.where(rows.flank != Flank.NONE, rows.pair % teeth, -1)
     values["sam_fraction"] = np.broadcast_to(fraction, len(rows))
-    return {f"{rows.dim}_{name}": each for name, each in values.items()}
+    return {f"{rows.dim}_{name}": column for name, column in values.items()}
 
 
 def row_variables(
@@ -129,12 +129,12 @@ def own_rows(ds: xr.Dataset) -> xr.Dataset:
         With the events and passages only that carry the labels of its runs.
     """
     for kind in kinds_in(ds) if "swept" in ds.attrs else ():
-        own = np.ones(ds.sizes[kind.dim], dtype=bool)
+        mask = np.ones(ds.sizes[kind.dim], dtype=bool)
         for name in map(str, ds.coords):
             label = f"{kind.dim}_{name}"
             if name not in LABELS and label in ds.variables and ds[name].ndim < 2:
-                own &= np.isin(ds[label].values, ds[name].values)
-        ds = ds if own.all() else ds.isel({kind.dim: own})
+                mask &= np.isin(ds[label].values, ds[name].values)
+        ds = ds if mask.all() else ds.isel({kind.dim: mask})
     return ds
 
 
@@ -147,7 +147,7 @@ def row_places(ds: xr.Dataset, dims: tuple[str, ...]) -> dict[str, list[Any]]:
     shape = tuple(ds.sizes[dim] for dim in dims)
     if not dims or not all(index.is_unique for index in indexes):
         return {}
-    found: dict[str, list[Any]] = {}
+    by_dim: dict[str, list[Any]] = {}
     for kind in kinds_in(ds):
         labels = [f"{kind.dim}_{dim}" for dim in dims]
         if any(label not in ds.variables for label in labels):
@@ -157,7 +157,7 @@ def row_places(ds: xr.Dataset, dims: tuple[str, ...]) -> dict[str, list[Any]]:
         order = np.argsort(number, kind="stable")
         bounds = pairwise(np.searchsorted(number[order], np.arange(int(np.prod(shape)) + 1)))
         if np.array_equal(order, np.arange(len(order))):
-            found[kind.dim] = [slice(first, last) for first, last in bounds]
+            by_dim[kind.dim] = [slice(first, last) for first, last in bounds]
         else:
-            found[kind.dim] = [order[first:last] for first, last in bounds]
-    return found
+            by_dim[kind.dim] = [order[first:last] for first, last in bounds]
+    return by_dim

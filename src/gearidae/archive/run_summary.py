@@ -107,21 +107,21 @@ def account(ds: xr.Dataset) -> Account | None:
     top = last = math.nan
     for piece in _pieces(ds, "time", ("time", "gear_speed")):
         top, last = float(np.fmax(top, piece["gear_speed"].max())), float(piece["time"][-1])
-    found = extremes_of(ds) or Extremes()
-    force, force_time = _largest_force(found)
+    extremes = extremes_of(ds) or Extremes()
+    force, force_time = _largest_force(extremes)
     end = float(ds.attrs["t_end"]) if ds.attrs["status"] == "finished" else 0.0
-    end, still = max(end, incidents.time, float(np.nan_to_num(last))), found.final_speed == 0.0
+    end, still = max(end, incidents.time, float(np.nan_to_num(last))), extremes.final_speed == 0.0
     at_rest, resting = incidents.rest(end, still=still)
-    held_by = incidents.holds() if resting else "adhesion" if found.turn_backs > 1 else ""
-    if not math.isnan(found.rest_time):  # else an archive of version 0.2, or without a checkpoint yet
-        at_rest, held_by = found.rest_time, Holding(found.holding).words
+    held_by = incidents.holds() if resting else "adhesion" if extremes.turn_backs > 1 else ""
+    if not math.isnan(extremes.rest_time):  # else an archive of version 0.2, or without a checkpoint yet
+        at_rest, held_by = extremes.rest_time, Holding(extremes.holding).words
     return Account(
-        top_speed=found.max_gear_speed,
+        top_speed=extremes.max_gear_speed,
         time_to_speed=_time_to_speed(ds, top),
         sticks=incidents.counts[EventKind.STICK],
         slips=incidents.counts[EventKind.SLIP],
         time_at_rest=at_rest,
-        time_adhering=found.time_adhering,
+        time_adhering=extremes.time_adhering,
         held_by=held_by,
         impacts=incidents.counts[EventKind.ONSET],
         largest_force=force,
@@ -159,7 +159,7 @@ def _energies(balance: Mapping[str, float] | None) -> dict[str, float]:
     return energies | {
         "residual": abs(energies["residual"]),
         "contact_loss": contact - (energies["radius_work"] + energies["model_change"]),
-        "friction_loss": sum(energies[name] for name, each in LOSSES.items() if each.group == "friction"),
+        "friction_loss": sum(energies[name] for name, loss in LOSSES.items() if loss.group == "friction"),
         "efficiency": EnergyBalance(energies).efficiency,
     }
 
@@ -193,8 +193,8 @@ class _Events:
 
     def add(self, time: Floats, kind: NDArray[np.int8], pair: NDArray[Any], flank: NDArray[Any]) -> None:
         self.time = float(time[-1])
-        for one in EventKind:
-            self.counts[one] += int(np.count_nonzero(kind == one))
+        for event in EventKind:
+            self.counts[event] += int(np.count_nonzero(kind == event))
         wanted = [EventKind.STICK, EventKind.SLIP, EventKind.FLANK_STICK, EventKind.FLANK_SLIP]
         if self.counts[EventKind.FLANK_STICK]:
             wanted.append(EventKind.SEPARATION)
@@ -223,7 +223,7 @@ class _Events:
             return self._total + end - self._since, True
         rubs = self._hubs or self._rubs
         moved = (EventKind.SLIP, EventKind.FLANK_STICK, EventKind.FLANK_SLIP, EventKind.SLIDING_REVERSAL)
-        if (self._dry or rubs) and still and not any(self.counts[one] for one in moved):
+        if (self._dry or rubs) and still and not any(self.counts[event] for event in moved):
             return end - self._start, True
         return self._total, still and rubs
 

@@ -39,8 +39,8 @@ def scene_of(ds: xr.Dataset) -> dict[str, Any]:
         If the dataset carries none.
     """
     try:
-        own = "scene" in ds.variables and not ds["scene"].dims
-        scene = json.loads(ds["scene"].values.item() if own else ds.attrs["scene"])
+        is_single = "scene" in ds.variables and not ds["scene"].dims
+        scene = json.loads(ds["scene"].values.item() if is_single else ds.attrs["scene"])
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise SceneError(
             "dataset", type(ds).__name__, "must come from simulate, sweep or open_archive"
@@ -59,8 +59,8 @@ def is_roller(ds: xr.Dataset) -> bool:
 def swept_dims(ds: xr.Dataset) -> tuple[str, ...]:
     """Dimensions along which the runs of a dataset differ; none for a single run."""
     of_runs = ("status", *sampled_columns(roller=is_roller(ds)), *EXTREMES)
-    found = next((ds[name] for name in of_runs if name in ds), None)
-    return () if found is None else tuple(str(dim) for dim in found.dims if dim != "time")
+    variable = next((ds[name] for name in of_runs if name in ds), None)
+    return () if variable is None else tuple(str(dim) for dim in variable.dims if dim != "time")
 
 
 def runs(ds: xr.Dataset) -> Iterator[tuple[dict[str, Any], xr.Dataset]]:
@@ -84,7 +84,7 @@ def runs(ds: xr.Dataset) -> Iterator[tuple[dict[str, Any], xr.Dataset]]:
     all_told = all(kind.dim in rows for kind in kinds_in(ds))
     for number, place in enumerate(np.ndindex(*(ds.sizes[dim] for dim in dims))):
         run = ds.isel(dict(zip(dims, place, strict=True)))
-        run = run.isel({dim: each[number] for dim, each in rows.items()})
+        run = run.isel({dim: places[number] for dim, places in rows.items()})
         run = run if all_told else own_rows(run)
         yield {dim: run[dim].values.item() for dim in dims}, run
 
@@ -222,17 +222,17 @@ def single_run(ds: xr.Dataset) -> xr.Dataset:
         return ds
     scene = run_scene(ds)
     ds = own_rows(ds.squeeze(swept_dims(ds)))
-    found: dict[str, Any] = {name: ds[name].values.item() for name in (*RUN, *OF_SWEPT_RUN) if name in ds}
-    found.pop("reached", None)
+    numbers: dict[str, Any] = {name: ds[name].values.item() for name in (*RUN, *OF_SWEPT_RUN) if name in ds}
+    numbers.pop("reached", None)
     swept = [str(name) for name in ds.coords if name not in (*LABELS, "sam_fraction")]
-    gone = {*found, *swept, *(f"{dim}_{name}" for dim in DIMS for name in swept)}
+    gone = {*numbers, *swept, *(f"{dim}_{name}" for dim in DIMS for name in swept)}
     single = ds.drop_vars([name for name in gone if name in ds.variables])
     single["sam_fraction"] = ((), scene.coating.sam_fraction, SAM_FRACTION.attributes)
     of_sweep = ("history", "source", "date_created", "product_version", "backend", "method", "keep")
     single.attrs = {
         **provenance(scene, ""),
         **{name: ds.attrs[name] for name in of_sweep if name in ds.attrs},
-        **found,
+        **numbers,
         **surface_regimes(scene),
     }
     return single

@@ -33,13 +33,13 @@ def summary_rows(ds: xr.Dataset) -> list[Row]:
     -------
     list of (str, str, str)
     """
-    found: list[Row] = []
+    rows: list[Row] = []
     if summary := account(ds):
-        found += _with_reach(ds, _summary_rows(summary.as_plain()))
-    found += _standing_rows(ds)
+        rows += _with_reach(ds, _summary_rows(summary.as_plain()))
+    rows += _standing_rows(ds)
     if numbers := balance_of(ds):
-        found += _with_reach(ds, _balance_rows(numbers))
-    return found
+        rows += _with_reach(ds, _balance_rows(numbers))
+    return rows
 
 
 def _with_reach(ds: xr.Dataset, rows: Iterator[tuple[str, Row]]) -> Iterator[Row]:
@@ -96,10 +96,10 @@ def _standing_rows(ds: xr.Dataset) -> Iterator[Row]:
 def _balance_rows(kept: dict[str, float]) -> Iterator[tuple[str, Row]]:
     yield "", ("Energy balance", "", "")
     least = sys.float_info.epsilon * kept["throughput"]  # what is smaller changes no digit of the sum
-    for name, each in TERMS.items():
+    for name, term in TERMS.items():
         if abs(kept[name]) > least:
-            part = "input" if each.sign > 0 else "lost" if name in LOSSES else ""
-            remark = ", ".join(filter(None, (part, each.remark)))
+            part = "input" if term.sign > 0 else "lost" if name in LOSSES else ""
+            remark = ", ".join(filter(None, (part, term.remark)))
             yield name, (name.replace("_", " "), with_prefix(kept[name], "J", 5), remark)
     bound = with_prefix(kept["residual_bound"], "J", 2)
     out_by = imbalance(kept["residual"], kept["residual_bound"])

@@ -46,7 +46,7 @@ def time_series(
     SceneError
         If there is no such sampled variable, or the table would be too large.
     """
-    sampled = [str(name) for name, each in ds.data_vars.items() if "time" in each.dims]
+    sampled = [str(name) for name, variable in ds.data_vars.items() if "time" in variable.dims]
     wanted = sampled if variables is None else [variables] if isinstance(variables, str) else list(variables)
     for name in wanted:
         if name not in sampled:
@@ -107,12 +107,15 @@ def run_labels(ds: xr.Dataset, dims: tuple[str, ...]) -> dict[str, Any]:
     """Return the swept keys' values, of zipped ones too, each as one array with an entry for each run."""
     shape = tuple(ds.sizes[dim] for dim in dims)
     along = [name for name in ds.coords if ds[name].dims and set(ds[name].dims) <= set(dims)]
-    found = {}
-    for name in sorted(map(str, along), key=lambda one: (one not in dims, dims.index(str(ds[one].dims[0])))):
+    labels = {}
+    for name in sorted(
+        map(str, along),
+        key=lambda coordinate: (coordinate not in dims, dims.index(str(ds[coordinate].dims[0]))),
+    ):
         place = dims.index(str(ds[name].dims[0]))
         spread = np.unravel_index(np.arange(math.prod(shape)), shape)[place]
-        found[name] = ds[name].values[spread]
-    return found
+        labels[name] = ds[name].values[spread]
+    return labels
 
 
 def _in_words(values: np.ndarray[Any, Any], kinds: type[IntEnum]) -> pd.Categorical:

@@ -27,8 +27,8 @@ _INPUTS: Final[ContextVar[frozenset[tuple[int, int]]]] = ContextVar("inputs", de
 @contextmanager
 def keeps_inputs(paths: Iterable[str]) -> Iterator[None]:
     """Refuse the files among some paths as targets until the block is left."""
-    found = [Path(path).stat() for path in paths if Path(path).is_file()]
-    token = _INPUTS.set(frozenset((each.st_dev, each.st_ino) for each in found))
+    inputs = [Path(path).stat() for path in paths if Path(path).is_file()]
+    token = _INPUTS.set(frozenset((status.st_dev, status.st_ino) for status in inputs))
     try:
         yield
     finally:
@@ -194,8 +194,8 @@ def whole_file(
         As `claims_target` does, unless a study of this thread has claimed the file; if the disk does not take the data.
     """
     target = check_target(path, overwrite=overwrite, name=name, remedy=remedy)
-    own = target in _CLAIMED.get()
-    with nullcontext() if own else claims_target(path, overwrite=overwrite, name=name, remedy=remedy):
+    is_claimed = target in _CLAIMED.get()
+    with nullcontext() if is_claimed else claims_target(path, overwrite=overwrite, name=name, remedy=remedy):
         part = part_beside(target.with_name(target.name.removesuffix(ending)), ending)
         try:
             yield part

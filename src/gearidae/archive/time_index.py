@@ -88,12 +88,12 @@ class TimeIndex(xr.Index):
         wanted = label.variable if isinstance(label, xr.DataArray) else label
         values = numbers_of(wanted, "s")
         places = np.array(
-            [self._place(float(one), method, tolerance) for one in values.ravel()], dtype=np.int64
+            [self._place(float(time), method, tolerance) for time in values.ravel()], dtype=np.int64
         )
-        found: Any = places.reshape(values.shape)
+        chosen: Any = places.reshape(values.shape)
         if isinstance(wanted, xr.Variable):
-            found = xr.Variable(wanted.dims, found)
-        return IndexSelResult({self._name: found if values.ndim else int(places[0])})
+            chosen = xr.Variable(wanted.dims, chosen)
+        return IndexSelResult({self._name: chosen if values.ndim else int(places[0])})
 
     def equals(self, other: xr.Index, *, exclude: frozenset[Hashable] | None = None) -> bool:
         """Whether another index has the same labels."""

@@ -58,7 +58,7 @@ def total_variables(
         return array.reshape(shape)
 
     made: dict[Hashable, Any] = {}
-    balances = [_energies(each, run.balance) for each, run in zip(scenes, runs, strict=True)]
+    balances = [_energies(member, run.balance) for member, run in zip(scenes, runs, strict=True)]
     for name, variable in ENERGY_TOTALS.items() if any(balances) else ():
         energies = (numbers.get(name, math.nan) for numbers in balances)
         made[name] = (dims, stacked(energies, variable.dtype), variable.attributes)
@@ -71,7 +71,7 @@ def total_variables(
             continue
         field = "smallest_separation" if name == "min_separation" else name
         variable = (ROLLER_EXTREMES if roller else EXTREMES)[name]
-        values = stacked((each[field] for each in extremes), variable.dtype)
+        values = stacked((extreme[field] for extreme in extremes), variable.dtype)
         made[name] = (dims, values, variable.attributes)
     if not roller:
         lists = stacked(map(standstills_as_text, extremes), object)

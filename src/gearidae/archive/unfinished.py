@@ -92,7 +92,9 @@ def trimmed(ds: xr.Dataset, path: Path, commit: Commit | None, *, running: bool)
             "end_state": packed_state(point.state),
             "wall_time": point.wall_time,
             **{
-                each.name: getattr(point.statistics, each.name) for each in COUNTERS if each.name in cut.attrs
+                counter.name: getattr(point.statistics, counter.name)
+                for counter in COUNTERS
+                if counter.name in cut.attrs
             },
         }
         scene = Scene.from_dict(json.loads(cut.attrs["scene"]))

@@ -74,13 +74,13 @@ class Variable:
             name: cls(
                 name,
                 (),
-                each.unit.si,
+                quantity.unit.si,
                 long_name,
-                np.int64 if each.kind == INT else np.float64,
-                comment=each.comment,
+                np.int64 if quantity.kind == INT else np.float64,
+                comment=quantity.comment,
             )
-            for each in quantities
-            for name, long_name in each.archive.items()
+            for quantity in quantities
+            for name, long_name in quantity.archive.items()
         }
 
     @property
@@ -163,24 +163,24 @@ POPULATION_EVENTS: Mapping[str, Variable] = {
 _SINCE_START = "from the start of the run, or of its chain of runs, to the mesh exit"
 
 
-def _of_passage(each: Quantity, name: str, meaning: str) -> Variable:
-    is_sum = each in (*passages.SUMS, *passages.CHANGES)
+def _of_passage(quantity: Quantity, name: str, meaning: str) -> Variable:
+    is_sum = quantity in (*passages.SUMS, *passages.CHANGES)
     return Variable(
         f"passage_{name}",
         ("passage",),
-        each.unit.si,
+        quantity.unit.si,
         meaning,
         passages.Passages.columns[name].dtype,
         Flank if name == "flank" else None,
-        _SINCE_START if is_sum else each.comment,
+        _SINCE_START if is_sum else quantity.comment,
     )
 
 
 _PASSAGES = (
     *(
-        _of_passage(each, name, meaning)
-        for each in passages.COLUMNS
-        for name, meaning in (each.archive or {each.name: each.meaning}).items()
+        _of_passage(quantity, name, meaning)
+        for quantity in passages.COLUMNS
+        for name, meaning in (quantity.archive or {quantity.name: quantity.meaning}).items()
     ),
     Variable("passage_tooth", ("passage",), "1", "tooth of the pinion, counted from 0", np.int64),
     Variable("passage_sam_fraction", ("passage",), "1", "SAM fraction of the run the passage belongs to"),
@@ -311,7 +311,7 @@ EXTREMES: Mapping[str, Variable] = {
 STANDSTILL_LIST = Variable(
     "standstill_list", (), "1", "standstills of the run as JSON, see ds.gearidae.standstills()", np.object_
 )
-ASPERITY_COUNTS = tuple(each.name for each in records.ASPERITY_COUNTS)
+ASPERITY_COUNTS = tuple(quantity.name for quantity in records.ASPERITY_COUNTS)
 """Those that only populations have."""
 RUN: Mapping[str, Variable] = {variable.name: variable for variable in _RUN}
 OF_SWEPT_RUN: Mapping[str, Variable] = {variable.name: variable for variable in _OF_SWEPT_RUN}
@@ -322,8 +322,8 @@ VERDICT: Mapping[str, Variable] = {variable.name: variable for variable in _VERD
 
 def extreme_names(scene: Scene) -> tuple[str, ...]:
     """Names of the extremes that a run of a scene leaves."""
-    found = EXTREMES if scene.roller is None else ROLLER_EXTREMES
-    return tuple(name for name in found if name not in ASPERITY_COUNTS or scene.contact.is_discrete)
+    extremes = EXTREMES if scene.roller is None else ROLLER_EXTREMES
+    return tuple(name for name in extremes if name not in ASPERITY_COUNTS or scene.contact.is_discrete)
 
 
 def by_name() -> dict[str, Variable]:

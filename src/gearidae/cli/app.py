@@ -60,8 +60,8 @@ def run(
     """Run one scene and write a netCDF archive, which can be opened during the run."""
     from gearidae.cli.simulation import run_case
 
-    given = [*(settings or []), *([] if until is None else [f"run.stop={until}"])]
-    return run_case(str(case), output, given, rtol, overwrite=overwrite, resume=resume, start=start)
+    changes = [*(settings or []), *([] if until is None else [f"run.stop={until}"])]
+    return run_case(str(case), output, changes, rtol, overwrite=overwrite, resume=resume, start=start)
 
 
 @app.command

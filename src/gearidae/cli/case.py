@@ -22,8 +22,8 @@ def shipped_cases() -> dict[str, Path]:
     package = Path(gearidae.__file__).parent
     # installed, and in a tree of the sources
     for folder in (package / "cases", package.parents[1] / "cases"):
-        if found := {path.stem: path for path in sorted(folder.glob("*.toml"))}:
-            return found
+        if cases := {path.stem: path for path in sorted(folder.glob("*.toml"))}:
+            return cases
     return {}
 
 

@@ -184,7 +184,9 @@ def _coating(scene: Scene) -> Rows:
         yield "SAM fraction", f"{pinion:g}", means
     else:
         yield "SAM fractions", f"{pinion:g} of the pinion, {gear:g} of the gear", means or "independent sides"
-        shares = ", ".join(f"{100.0 * one.share:.3g} % {one.name}" for one in scene.materials())
+        shares = ", ".join(
+            f"{100.0 * material.share:.3g} % {material.name}" for material in scene.materials()
+        )
         yield "interface", shares, ""
     if coating.thickness > 0.0:
         recess = 2.0 * coating.thickness / scene.surface.roughness

@@ -65,17 +65,17 @@ def assess_signal(
     )
     record = selected(record, select, "--select", _dims(record["gear_speed"], "time"))
     mapped = selected(mapped, line, "--line", _dims(mapped["characteristic_frequency"], "sam_fraction"))
-    found = gd.analysis.assess(record, mapped, **known)
+    assessment = gd.analysis.assess(record, mapped, **known)
     if as_json:
-        derived = {"uncertainty": found.uncertainty, "conclusive": found.conclusive}
-        say_json({**asdict(found), **derived})
+        derived = {"uncertainty": assessment.uncertainty, "conclusive": assessment.conclusive}
+        say_json({**asdict(assessment), **derived})
         return DONE
-    if found.reading:
-        say(f"{signal}: {found.reading}")
-    say(f"{found.verdict}: {found.explanation}")
+    if assessment.reading:
+        say(f"{signal}: {assessment.reading}")
+    say(f"{assessment.verdict}: {assessment.explanation}")
     return DONE
 
 
-def _dims(array: xr.DataArray, own: str) -> list[str]:
+def _dims(array: xr.DataArray, axis: str) -> list[str]:
     """Dimensions of an array beside its own."""
-    return [str(dim) for dim in array.dims if dim != own]
+    return [str(dim) for dim in array.dims if dim != axis]

@@ -41,15 +41,15 @@ def cases(context: CompletionContext) -> Iterable[str]:
 def _cases_in(folder: Path, prefix: str, begun: str) -> Iterator[str]:
     """Go through case files and folders, and what is in those: a folder alone would be followed by a blank."""
     try:
-        found = sorted(path for path in folder.iterdir() if path.name.startswith(begun))
+        paths = sorted(path for path in folder.iterdir() if path.name.startswith(begun))
     except OSError:
         return
-    for path in found:
+    for path in paths:
         if path.suffix == ".toml":
             yield f"{prefix}{path.name}"
         elif path.is_dir() and (begun or not path.name.startswith(".")):
             yield f"{prefix}{path.name}/"
-            if len(found) == 1:
+            if len(paths) == 1:
                 yield from _cases_in(path, f"{prefix}{path.name}/", "")
 
 

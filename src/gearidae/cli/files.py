@@ -90,10 +90,10 @@ def describe(archive: Path, *, as_json: bool = False) -> int:
         show_outcomes(ds)
         show_summary(ds)
     else:
-        found = answer(ds, kind)
+        result = answer(ds, kind)
         show_rows([*_contents(archive, ds), *_scene_rows(ds)])
-        show_rows(found.rows)
-        say(found.sentence)
+        show_rows(result.rows)
+        say(result.sentence)
     if kind == "runs" or ATTRIBUTE in ds.attrs:  # working the rows out loads the solver
         show_validity(validity_of(ds), about=contact_subject(roller=is_roller(ds), swept=swept_dims(ds)))
     return DONE
@@ -112,8 +112,8 @@ def _contents(archive: Path, ds: xr.Dataset) -> Iterator[tuple[str, str, str]]:
     for dim, size in ds.sizes.items():
         yield f"dimension: {dim}", str(size), ""
     yield "variables", "", ""
-    for name, one in ds.data_vars.items():
-        yield str(name), f"({', '.join(map(str, one.dims))})", str(one.attrs.get("units", ""))
+    for name, variable in ds.data_vars.items():
+        yield str(name), f"({', '.join(map(str, variable.dims))})", str(variable.attrs.get("units", ""))
 
 
 def _description(archive: Path, ds: xr.Dataset) -> Iterator[tuple[str, str, str]]:

@@ -49,7 +49,7 @@ def archive_facts(archive: Path, ds: xr.Dataset) -> dict[str, Any]:
         **{name: ds.attrs[name] for name in _ATTRIBUTES if name in ds.attrs},
         **_contents(ds),
         "swept": {dim: ds[dim].values.tolist() for dim in swept_dims(ds)},
-        "outcomes": [{**asdict(one), "words": one.words} for one in outcomes(ds)],
+        "outcomes": [{**asdict(outcome), "words": outcome.words} for outcome in outcomes(ds)],
         "run_summary": summary and summary.as_plain(),
         "energy_balance": energy_balance(ds),
         "scene": scene_of(ds),
@@ -68,15 +68,15 @@ def product_facts(path: Path, ds: xr.Dataset, kind: str) -> dict[str, Any]:
     kind : str
         From `gearidae.studies.products.open_product`.
     """
-    found = answer(ds, kind)
+    result = answer(ds, kind)
     return {
         "file": str(path),
         "bytes": path.stat().st_size,
         "kind": kind,
         "attributes": {str(name): value for name, value in ds.attrs.items() if name != "scene"},
         **_contents(ds),
-        "answer": found.sentence,
-        "rows": [list(row) for row in found.rows],
+        "answer": result.sentence,
+        "rows": [list(row) for row in result.rows],
         "scene": scene_of(ds),
     }
 
@@ -86,8 +86,11 @@ def _contents(ds: xr.Dataset) -> dict[str, Any]:
     return {
         "sizes": {str(name): size for name, size in ds.sizes.items()},
         "variables": {
-            str(name): {"dimensions": list(map(str, one.dims)), "units": str(one.attrs.get("units", ""))}
-            for name, one in ds.data_vars.items()
+            str(name): {
+                "dimensions": list(map(str, variable.dims)),
+                "units": str(variable.attrs.get("units", "")),
+            }
+            for name, variable in ds.data_vars.items()
         },
     }
 
@@ -95,9 +98,9 @@ def _contents(ds: xr.Dataset) -> dict[str, Any]:
 def _plain(value: Any) -> Any:
     """Turn what numpy and dataclasses hold into what JSON knows."""
     if isinstance(value, Mapping):
-        return {str(key): _plain(one) for key, one in value.items()}
+        return {str(key): _plain(entry) for key, entry in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_plain(one) for one in value]
+        return [_plain(entry) for entry in value]
     if isinstance(value, np.ndarray | np.generic):
         return _plain(value.tolist())
     if isinstance(value, float) and not math.isfinite(value):

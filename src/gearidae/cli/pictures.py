@@ -81,10 +81,10 @@ def draw(
         )
     asked: dict[str, object] = {"--time": time, "--from": span[0], "--to": span[1], "--frames": frames}
     asked["--output"] = output if output is not None and _is_moving(output) else None
-    given = {option: str(value) for option, value in asked.items() if value is not None}
-    if given and picture != "teeth":
-        raise SceneError(*next(iter(given.items())), "needs --picture teeth")
-    moves = bool(given.keys() - {"--time"})
+    options = {option: str(value) for option, value in asked.items() if value is not None}
+    if options and picture != "teeth":
+        raise SceneError(*next(iter(options.items())), "needs --picture teeth")
+    moves = bool(options.keys() - {"--time"})
     ds, kind = open_product(archive)
     usual = next(iter(usual_pictures(ds, kind)))
     ds = selected(ds, select, "--select", swept_dims(ds) if select else ())

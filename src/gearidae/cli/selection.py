@@ -44,11 +44,11 @@ def selected(ds: xr.Dataset, pairs: Sequence[str], option: str, dims: Sequence[s
         labels = ds[dim].values
         numeric = np.issubdtype(labels.dtype, np.number) and isinstance(value, int | float)
         # a value as it is printed is not always the same float
-        found = (
+        matches = (
             np.isclose(labels, value, rtol=1e-9, atol=0.0) if numeric else labels.astype(str) == str(value)
         )
-        if not found.any():
-            shown = ", ".join(f"{each:g}" if numeric else str(each) for each in labels[:_MOST_SHOWN])
+        if not matches.any():
+            shown = ", ".join(f"{label:g}" if numeric else str(label) for label in labels[:_MOST_SHOWN])
             raise SceneError(f"{option} {dim}", value, f"must be one of {shown}")
-        ds = ds.isel({dim: int(np.flatnonzero(found)[0])})
+        ds = ds.isel({dim: int(np.flatnonzero(matches)[0])})
     return ds

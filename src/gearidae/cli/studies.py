@@ -58,11 +58,11 @@ def run_study(study: Study, case: str, request: Request, call: Call) -> int:
             overwrite=request.overwrite,
             resume=request.resume,
         )
-    found = answer(ds, kind_of(ds))
-    show_rows(found.rows)
+    result = answer(ds, kind_of(ds))
+    show_rows(result.rows)
     say(f"{study.title}: {target}")
     code = _code(ds)
-    say(found.sentence)
+    say(result.sentence)
     return code
 
 

@@ -72,16 +72,16 @@ def _function(study: Study) -> Any:
     assert study.command is not None
     made = study.command
 
-    def run(case: Any, *, request: Request = _USUAL, **given: Any) -> int:
+    def run(case: Any, *, request: Request = _USUAL, **options: Any) -> int:
         from gearidae.cli.studies import run_study
 
-        return run_study(study, str(case), request, made(**given))
+        return run_study(study, str(case), request, made(**options))
 
     parameters = [
         inspect.Parameter("case", inspect.Parameter.POSITIONAL_OR_KEYWORD, annotation=Case),
         *(
-            each.replace(annotation=_annotation(each.annotation))
-            for each in inspect.signature(made, eval_str=True).parameters.values()
+            parameter.replace(annotation=_annotation(parameter.annotation))
+            for parameter in inspect.signature(made, eval_str=True).parameters.values()
         ),
         inspect.Parameter(
             "request",
@@ -91,7 +91,7 @@ def _function(study: Study) -> Any:
         ),
     ]
     run.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
-    run.__annotations__ = {each.name: each.annotation for each in parameters}
+    run.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
     return run
 
 

@@ -88,7 +88,7 @@ def analyse_scan(
     if len(set(checked)) < len(checked):
         raise SceneError("output", targets[-1], "is named for two products: give each a name of its own")
     heights, own_size = read_lines(scan, choices.unit)
-    found = gd.surface_from(
+    surface = gd.surface_from(
         heights,
         _size(choices.size, own_size),
         choices.cutoff,
@@ -97,16 +97,16 @@ def analyse_scan(
         align_rows=choices.align_rows,
         source=scan.name,
     )
-    text = None if output is None else _text(found, choices.case)
-    listed = None if choices.asperities is None else found.asperity_list(_along(choices.case))
-    show_surface(found)
+    text = None if output is None else _text(surface, choices.case)
+    listed = None if choices.asperities is None else surface.asperity_list(_along(choices.case))
+    show_surface(surface)
     if choices.asperities is not None and listed is not None:
-        _write_list(choices.asperities, listed, found, overwrite=overwrite)
+        _write_list(choices.asperities, listed, surface, overwrite=overwrite)
     if picture is not None:
         from gearidae.drawing.picture import usual_style
 
         with usual_style():
-            gd.plot.write(gd.plot.surface(found.statistics, found.cutoff), picture, overwrite=overwrite)
+            gd.plot.write(gd.plot.surface(surface.statistics, surface.cutoff), picture, overwrite=overwrite)
         say(f"Picture: {picture}")
     if output is not None and text is not None:
         with whole_file(output, overwrite=overwrite, name="output") as part:
@@ -122,36 +122,36 @@ def _along(case: str | None) -> str:
     return "arc" if case is None or read_scene(case, []).roller is None else "x"
 
 
-def _write_list(path: Path, text: str, found: gd.surfaces.MeasuredSurface, *, overwrite: bool) -> None:
+def _write_list(path: Path, text: str, surface: gd.surfaces.MeasuredSurface, *, overwrite: bool) -> None:
     """Write a list of asperities, and say how much of a flank it is."""
     with whole_file(path, overwrite=overwrite, name="output") as part:
         part.write_text(text, encoding="utf-8")
-    assert found.asperities is not None
-    length, width = (with_prefix(found.asperities.attrs[side], "m", 3) for side in ("length", "width"))
+    assert surface.asperities is not None
+    length, width = (with_prefix(surface.asperities.attrs[side], "m", 3) for side in ("length", "width"))
     say(f"Note: the list covers a flank of {length}, {width} wide; teeth that meet beyond touch nothing.")
     say(f"Asperities: {path}")
 
 
-def _size(given: str | None, own: tuple[float, float] | None) -> str | tuple[float | str, float | str]:
-    if given is not None:
-        parts = [part.strip() for part in given.split(",")]
+def _size(asked: str | None, extent: tuple[float, float] | None) -> str | tuple[float | str, float | str]:
+    if asked is not None:
+        parts = [part.strip() for part in asked.split(",")]
         if len(parts) > 2:
-            raise SceneError("--size", given, "must be one length or two")
-        if own is not None:
-            stated = ", ".join(with_prefix(length, "m", 4) for length in own)
+            raise SceneError("--size", asked, "must be one length or two")
+        if extent is not None:
+            stated = ", ".join(with_prefix(length, "m", 4) for length in extent)
             say(f"Note: the file states an extent of {stated}; --size replaces it.")
         return parts[0] if len(parts) == 1 else (parts[0], parts[1])
-    if own is None:
+    if extent is None:
         raise SceneError("--size", "(none)", "is needed: this file does not tell its extent, such as 2 um")
-    return own
+    return extent
 
 
-def _text(found: gd.surfaces.MeasuredSurface, case: str | None) -> str:
+def _text(surface: gd.surfaces.MeasuredSurface, case: str | None) -> str:
     """Text of the file: a table, or a whole case with the surface replaced."""
     if case is None:
-        return found.fragment()
-    comments = "".join(line for line in _comments(found.fragment()))
-    return comments + gd.dump_case(read_scene(case, []).replace(found.settings))
+        return surface.fragment()
+    comments = "".join(line for line in _comments(surface.fragment()))
+    return comments + gd.dump_case(read_scene(case, []).replace(surface.settings))
 
 
 def _comments(fragment: str) -> Iterator[str]:

@@ -30,15 +30,15 @@ _HEADINGS = (
 )
 
 
-def show_surface(found: MeasuredSurface) -> None:
+def show_surface(surface: MeasuredSurface) -> None:
     """Print asperities by summits and by moments for some cut-off wavelengths, and the remarks.
 
     Parameters
     ----------
-    found : MeasuredSurface
+    surface : MeasuredSurface
         A chosen cut-off has a row, marked by an arrow.
     """
-    ds = found.statistics
+    ds = surface.statistics
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
     table.title, table.title_justify = (
         "Asperities of one flank by summits (left) and by moments (right)",
@@ -48,17 +48,17 @@ def show_surface(found: MeasuredSurface) -> None:
         table.add_column(heading, justify="right", no_wrap=True)
     count = ds.sizes["cutoff"]
     rows = set(np.linspace(0, count - 1, min(count, _MOST_ROWS)).round().astype(int).tolist())
-    if found.cutoff is not None:
-        rows.add(int(np.flatnonzero(ds["cutoff"].values == found.cutoff)[0]))
+    if surface.cutoff is not None:
+        rows.add(int(np.flatnonzero(ds["cutoff"].values == surface.cutoff)[0]))
     for place in sorted(rows):
         row = ds.isel(cutoff=place)
-        chosen = float(row["cutoff"]) == found.cutoff
+        chosen = float(row["cutoff"]) == surface.cutoff
         table.add_row(*_cells(row, "> " if chosen else ""))
     show(table)
-    for remark in found.remarks:
+    for remark in surface.remarks:
         say(f"Note: {remark}")
-    if found.cutoff is not None:
-        say(found.planes)
+    if surface.cutoff is not None:
+        say(surface.planes)
 
 
 def _cells(row: xr.Dataset, mark: str) -> list[str]:

@@ -74,8 +74,8 @@ def name_failures(ds: xr.Dataset) -> int:
     """
     failed = [number for number, word in enumerate(ds["status"].values.tolist()) if word != "finished"]
     for number in failed[:_NAMED]:
-        one = ds.isel(member=number)
-        complain(f"member {number}: {one['message'].item() or one['status'].item()}")
+        member = ds.isel(member=number)
+        complain(f"member {number}: {member['message'].item() or member['status'].item()}")
     if len(failed) > _NAMED:
         complain(f"{len(failed) - _NAMED} more members could not be finished")
     return len(failed)

@@ -41,7 +41,9 @@ def pick(verdicts: Sequence[str], most: int) -> list[int]:
 def _in_order_of_interest(verdicts: Sequence[str]) -> Iterator[int]:
     """Go through runs that should be seen, the most important first; some come twice."""
     yield from (0, len(verdicts) - 1)
-    changes = [number for number, (one, next_one) in enumerate(pairwise(verdicts)) if one != next_one]
+    changes = [
+        number for number, (verdict, following) in enumerate(pairwise(verdicts)) if verdict != following
+    ]
     for number in changes:
         if (verdicts[number] in STUCK) != (verdicts[number + 1] in STUCK):
             yield from (number, number + 1)

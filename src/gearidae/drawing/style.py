@@ -122,11 +122,11 @@ def runs_of(ds: xr.Dataset, name: str) -> list[Run]:
     drawable = len(kept)
     if drawable > _MOST_RUNS:
         judged = outcomes(ds)
-        kept = [kept[number] for number in pick([judged[each].verdict for each in kept], _MOST_RUNS)]
-    found = [everything[number] for number in kept]
-    if not found:
+        kept = [kept[number] for number in pick([judged[place].verdict for place in kept], _MOST_RUNS)]
+    chosen = [everything[number] for number in kept]
+    if not chosen:
         raise SceneError("plot", name, "the dataset has no samples of it")
-    labels = [_label(label, run) for label, run in found]
+    labels = [_label(label, run) for label, run in chosen]
     short = [_shortened(label) for label in labels]
     if len(set(short)) == len(set(labels)):
         labels = short
@@ -138,7 +138,7 @@ def runs_of(ds: xr.Dataset, name: str) -> list[Run]:
             LINE_STYLES[number % len(LINE_STYLES)],
             drawable,
         )
-        for number, (_, run) in enumerate(found)
+        for number, (_, run) in enumerate(chosen)
     ]
 
 

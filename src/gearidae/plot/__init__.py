@@ -37,7 +37,10 @@ if TYPE_CHECKING:
 
 __getattr__, __dir__, __all__ = lazy_names(__name__)
 _of_studies = {
-    one.name: one.draw for each in studies().values() for one in each.pictures if one.draw is not None
+    picture.name: picture.draw
+    for study in studies().values()
+    for picture in study.pictures
+    if picture.draw is not None
 }
 globals().update(_of_studies)
 __all__ = sorted({*__all__, *_of_studies})

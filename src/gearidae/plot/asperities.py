@@ -62,13 +62,13 @@ def rough_sample(scene: GearScene, pair: int) -> tuple[Floats, Floats, NDArray[n
     x = (np.arange(count) + 0.5 + random.uniform(-0.3, 0.3, count)) * (2.0 * reach / count) - reach
     height = surface.roughness * random.standard_normal(count)
     # the coated first, so that what is covered stays so while the share falls
-    materials = {one.name: one for one in scene.materials()}
+    materials = {material.name: material for material in scene.materials()}
     order = [materials[name] for name in ("coated", "mixed", "bare") if name in materials]
     drawn = np.searchsorted(
-        np.cumsum([one.share for one in order[:-1]]), random.uniform(size=count), side="right"
+        np.cumsum([material.share for material in order[:-1]]), random.uniform(size=count), side="right"
     )
-    number = np.array([MATERIAL_NAMES.index(one.name) for one in order])[drawn]
-    return x, height - np.array([one.gap_offset for one in order])[drawn], number
+    number = np.array([MATERIAL_NAMES.index(material.name) for material in order])[drawn]
+    return x, height - np.array([material.gap_offset for material in order])[drawn], number
 
 
 def flank_asperities(scene: GearScene, pair: int, flank: Flank) -> MetFlank:
@@ -97,7 +97,7 @@ def joined_asperities(scene: GearScene, contact: ToothContact) -> float:
         return float(len(contact.asperities or ()))
     sigma = scene.surface.roughness
     s, step = np.linspace(-6.0, 6.0, 1201, retstep=True)
-    materials = {one.name: one for one in scene.materials()}
+    materials = {material.name: material for material in scene.materials()}
     above = sum(
         materials[part].share
         * float(np.sum(scipy.special.ndtr(-((joined + materials[part].gap_offset) / sigma + s**2))))

@@ -42,13 +42,13 @@ def asperity_events(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
         raise SceneError(
             "dataset", f"runs along {dims[0]}", "must be a single run: select one, as --select does"
         )
-    run = next(one for _, one in single_runs(ds))
+    run = next(run for _, run in single_runs(ds))
     scene = run_scene(run)
     if not scene.contact.is_discrete:
         raise SceneError("contact.roughness", scene.contact.roughness, "must be discrete for this picture")
     if not scene.run.asperity_events:
         raise SceneError("run.asperity_events", "false", "must be true for this picture")
-    name = next((one for one in _FORCES if one in ds), _FORCES[0])
+    name = next((name for name in _FORCES if name in ds), _FORCES[0])
     (drawn,) = runs_of(ds, name)
     start, end = _cycle(run)
     time, force = run["time"].values, drawn.data[name].values

@@ -43,16 +43,22 @@ def sticking_probability(
     """
     names = drawn_keys(ds)
     over = over or next((key for key in (_COVERAGE, *names) if key in names and key != SEED), SEED)
-    found = probability_of(ds, over, bins=bins)
+    estimate = probability_of(ds, over, bins=bins)
     name = names[over]
-    along = parameter_axis(found[name])
+    along = parameter_axis(estimate[name])
     ax = new_axes(ax, height=3.8)
     ax.fill_between(
-        along.places, found["low"], found["high"], color=POSITIVE, alpha=0.25, linewidth=0, label="95 % band"
+        along.places,
+        estimate["low"],
+        estimate["high"],
+        color=POSITIVE,
+        alpha=0.25,
+        linewidth=0,
+        label="95 % band",
     )
     ax.plot(
         along.places,
-        found["probability"],
+        estimate["probability"],
         color=POSITIVE,
         marker=".",
         linewidth=1.4,

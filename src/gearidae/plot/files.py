@@ -76,7 +76,7 @@ def whole_file(
     """
     ending = _kind(Path(path))
     if ending not in known:
-        endings = ", ".join(f".{each}" for each in sorted(known))
+        endings = ", ".join(f".{suffix}" for suffix in sorted(known))
         raise SceneError("picture", path, f"must end in one of {endings}")
     with target.whole_file(path, overwrite=overwrite, name="picture", ending=f".{ending}") as part:
         yield part

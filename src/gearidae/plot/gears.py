@@ -128,13 +128,13 @@ def _mark_standstills(ax: Axes, run: Run) -> None:
     names, rows = standstill_rows(run.data)
     named: dict[str, None] = {}
     for row in rows:
-        one = dict(zip(names, row, strict=True))
-        end = float(run.data["time"][-1]) if math.isnan(one["end"]) else one["end"]
-        label = "_" if one["verdict"] in named else one["verdict"]
-        named[one["verdict"]] = None
-        look = look_of(one["verdict"])
+        standstill = dict(zip(names, row, strict=True))
+        end = float(run.data["time"][-1]) if math.isnan(standstill["end"]) else standstill["end"]
+        label = "_" if standstill["verdict"] in named else standstill["verdict"]
+        named[standstill["verdict"]] = None
+        look = look_of(standstill["verdict"])
         ax.axvspan(
-            one["begin"] * time.factor,
+            standstill["begin"] * time.factor,
             end * time.factor,
             facecolor=look.colour,
             alpha=0.2,

@@ -83,7 +83,7 @@ def outcome(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     if len(dims) == 1:
         _bars(ax, axes[0], judged)
     else:
-        _fields(ax, axes[0], axes[1], np.array([one.verdict for one in judged], dtype=object))
+        _fields(ax, axes[0], axes[1], np.array([result.verdict for result in judged], dtype=object))
     return ax
 
 
@@ -99,12 +99,12 @@ def _bars(ax: Axes, along: ParameterAxis, judged: Sequence[GearOutcome | RollerO
     scale = scale_for(largest, unit) if unit == "N" else scaled(largest, unit)
     lows, highs = lows * scale.factor, highs * scale.factor
     ax.vlines(along.places, lows, highs, color="0.6", linewidth=1.6, zorder=2)
-    for verdict in dict.fromkeys(one.verdict for one in judged):
-        own = np.array([one.verdict == verdict for one in judged])
+    for verdict in dict.fromkeys(result.verdict for result in judged):
+        chosen = np.array([result.verdict == verdict for result in judged])
         look = look_of(verdict)
         ax.plot(
-            along.places[own],
-            lows[own],
+            along.places[chosen],
+            lows[chosen],
             look.marker,
             color=look.colour,
             markersize=6,
@@ -112,9 +112,9 @@ def _bars(ax: Axes, along: ParameterAxis, judged: Sequence[GearOutcome | RollerO
             zorder=3,
         )
     order = np.argsort(along.places, kind="stable")
-    for one, other in pairwise(order):
-        if judged[one].verdict != judged[other].verdict:
-            middle = 0.5 * (along.places[one] + along.places[other])
+    for left, right in pairwise(order):
+        if judged[left].verdict != judged[right].verdict:
+            middle = 0.5 * (along.places[left] + along.places[right])
             ax.axvline(middle, color="0.3", linestyle=":", linewidth=1.0, zorder=1)
     ax.axhline(0.0, color="0.3", linewidth=0.8, zorder=1)
     tidy(ax)
@@ -131,11 +131,11 @@ def _extents(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], str, str]:
     """Lower and upper ends of the bars [SI], their unit, and what they are."""
     if isinstance(judged[0], RollerOutcome):
-        rollers = [one for one in judged if isinstance(one, RollerOutcome)]
-        lows = np.array([-one.pull_off_force for one in rollers])
-        return lows, np.array([one.peak_force for one in rollers]), "N", "largest pull and push"
-    gears = [one for one in judged if isinstance(one, GearOutcome)]
-    lows, highs = (np.array([getattr(one, name) for one in gears]) for name in ("min_speed", "max_speed"))
+        rollers = [result for result in judged if isinstance(result, RollerOutcome)]
+        lows = np.array([-roller.pull_off_force for roller in rollers])
+        return lows, np.array([roller.peak_force for roller in rollers]), "N", "largest pull and push"
+    gears = [result for result in judged if isinstance(result, GearOutcome)]
+    lows, highs = (np.array([getattr(gear, name) for gear in gears]) for name in ("min_speed", "max_speed"))
     return lows, highs, "rad/s", "lowest to highest gear speed"
 
 
@@ -152,8 +152,8 @@ def _fields(ax: Axes, down: ParameterAxis, across: ParameterAxis, verdicts: NDAr
         fields.set_hatch(look.hatch)
         ax.add_collection(fields, autolim=False)
     handles = [
-        Patch(facecolor=look_of(one).colour, hatch=look_of(one).hatch, edgecolor="white", linewidth=0.0)
-        for one in shown
+        Patch(facecolor=look_of(word).colour, hatch=look_of(word).hatch, edgecolor="white", linewidth=0.0)
+        for word in shown
     ]
     ax.set_xlim(-0.5, len(columns) - 0.5)
     ax.set_ylim(-0.5, len(rows) - 0.5)

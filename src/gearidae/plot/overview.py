@@ -32,7 +32,7 @@ def usual_pictures(ds: xr.Dataset, kind: str) -> dict[str, str]:
     if kind == "runs":
         sampled = any(name in ds for name in sampled_columns(roller=is_roller(ds)))
         return {"overview" if sampled or not swept_dims(ds) else "outcome": ""}
-    return {each.name: each.caption for each in studies()[kind].pictures if each.needs(ds)}
+    return {picture.name: picture.caption for picture in studies()[kind].pictures if picture.needs(ds)}
 
 
 def overview(ds: xr.Dataset) -> Figure:

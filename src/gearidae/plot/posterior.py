@@ -82,8 +82,8 @@ def _axis(ds: xr.Dataset, key: str, name: str) -> _Key:
         edges = np.append(along.places - half, along.places[-1] + half)
     else:
         edges = np.linspace(along.places.min(), along.places.max(), _BINS + 1)
-    one = ds.sel(parameter=key)
-    return _Key(edges, along.label, factor * float(one["mean"]), factor * one["quantiles"].values)
+    summary = ds.sel(parameter=key)
+    return _Key(edges, along.label, factor * float(summary["mean"]), factor * summary["quantiles"].values)
 
 
 def _factor(values: Floats, places: Floats) -> float:
@@ -102,8 +102,8 @@ def _cells(ds: xr.Dataset, names: list[str], axes: list[_Key]) -> Callable[[list
 
     def of_draws(chosen: list[int]) -> Floats:
         points = np.stack([parameter_axis(ds[names[number]]).places for number in chosen], axis=1)
-        found, _ = np.histogramdd(points, [axes[number].edges for number in chosen])
-        return np.asarray(found / len(points), dtype=np.float64)
+        counts, _ = np.histogramdd(points, [axes[number].edges for number in chosen])
+        return np.asarray(counts / len(points), dtype=np.float64)
 
     return of_grid if "weight" in ds else of_draws
 

@@ -106,7 +106,7 @@ def power_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     shown = runs_of(ds, "gear_speed")
     ax = new_axes(ax)
     harmonics = scene_of(ds).get("drive", {}).get("harmonic", [])
-    drive = [float(one["frequency"]) for one in harmonics if "frequency" in one]
+    drive = [float(harmonic["frequency"]) for harmonic in harmonics if "frequency" in harmonic]
     mesh = max(_mesh_frequency(ds, _settled(run, _SETTLED)) for run in shown)
     rings = [] if drive else sorted({ring for run in shown for ring in _rings(run)})
     lines = [line for line in (mesh, *drive) if line > 0.0]
@@ -249,12 +249,14 @@ def impact_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
 
 
 def _single(ds: xr.Dataset) -> xr.Dataset:
-    found = list(runs(ds)) if "gear_speed" in ds else []
-    if len(found) != 1:
+    members = list(runs(ds)) if "gear_speed" in ds else []
+    if len(members) != 1:
         raise SceneError(
-            "plot", f"({len(found)} runs)", "a spectrogram shows one run with a gear speed: pick it with .sel"
+            "plot",
+            f"({len(members)} runs)",
+            "a spectrogram shows one run with a gear speed: pick it with .sel",
         )
-    return found[0][1]
+    return members[0][1]
 
 
 def _settled(run: Run, share: float) -> xr.Dataset:
@@ -342,8 +344,8 @@ def _mesh_frequency(ds: xr.Dataset, run: xr.Dataset) -> float:
 
 def _period(ds: xr.Dataset, shown: list[Run]) -> tuple[float, str]:
     """Length of a cycle [s] and what it is a cycle of."""
-    given: list[dict[str, Any]] = scene_of(ds).get("drive", {}).get("harmonic", [])
-    harmonics = [one for one in given if "frequency" in one]
+    listed: list[dict[str, Any]] = scene_of(ds).get("drive", {}).get("harmonic", [])
+    harmonics = [harmonic for harmonic in listed if "frequency" in harmonic]
     duration = float(ds["time"][-1] - ds["time"][0])
     if harmonics and float(harmonics[0]["frequency"]) * duration > 1.0:
         return 1.0 / float(harmonics[0]["frequency"]), "cycle of the drive"

@@ -103,12 +103,12 @@ def pairs_at_most(scene: GearScene) -> int:
 
 def nearest_pairs(state: MeshState, places: int) -> list[ToothContact]:
     """Return the pairs of the flank that is nearest, at most one for each number modulo `places`."""
-    nearest = min(state.contacts, key=lambda one: one.gap).flank
+    nearest = min(state.contacts, key=lambda contact: contact.gap).flank
     taken: dict[int, ToothContact] = {}
-    for one in sorted(state.contacts, key=lambda one: one.gap):
-        if one.flank == nearest:
-            taken.setdefault(one.pair % places, one)
-    return sorted(taken.values(), key=lambda one: one.pair)
+    for contact in sorted(state.contacts, key=lambda contact: contact.gap):
+        if contact.flank == nearest:
+            taken.setdefault(contact.pair % places, contact)
+    return sorted(taken.values(), key=lambda contact: contact.pair)
 
 
 class TeethView:
@@ -125,7 +125,9 @@ class TeethView:
     def __init__(self, ds: xr.Dataset, states: Sequence[MeshState]) -> None:
         self._scene = require_gears(run_scene(ds))
         self._picture = mesh_picture(self._scene)
-        self._largest = max((abs(one.force) for state in states for one in state.contacts), default=0.0)
+        self._largest = max(
+            (abs(contact.force) for state in states for contact in state.contacts), default=0.0
+        )
         self._places = pairs_at_most(self._scene)
         self.figure = new_picture((7.6, 7.2))
         self._mesh = self.figure.add_axes((0.015, 0.525, 0.97, 0.43))
@@ -142,12 +144,12 @@ class TeethView:
         _draw_mesh(self._mesh, self._picture, state, shown, self._largest)
         for place, ax in enumerate(self._close):
             ax.clear()
-            here = [one for one in shown if one.pair % self._places == place]
+            here = [contact for contact in shown if contact.pair % self._places == place]
             ax.set_visible(bool(here))
-            for one in here:
-                factor = close_up(ax, self._scene, one)
-                joined = joined_asperities(self._scene, one)
-                _caption(ax, one, factor, joined, narrow=self._places > 2)
+            for contact in here:
+                factor = close_up(ax, self._scene, contact)
+                joined = joined_asperities(self._scene, contact)
+                _caption(ax, contact, factor, joined, narrow=self._places > 2)
         self._cursor.set_xdata([state.time * self._time_factor] * 2)
         self._mesh.set_title(_headline(state), loc="left", fontsize="medium")
 
@@ -209,8 +211,8 @@ def _draw_mesh(
             *ends.T, color="0.1" if used else "0.55", linewidth=1.0, linestyle="-" if used else (0, (4, 3))
         )
     ax.plot(0.0, 0.0, "+", color="0.1", markersize=9)
-    for one in shown:
-        _draw_contact(ax, picture, one, largest)
+    for contact in shown:
+        _draw_contact(ax, picture, contact, largest)
     way = math.copysign(1.0, state.gear_speed)
     for name, height in (("pinion, drives", _UP - 0.28), ("gear", -_DOWN + 0.18)):
         ax.text(-_ACROSS + 0.1, height, f"{name}  {'→' if way > 0 else '←'}", fontsize="small", va="center")
@@ -220,21 +222,21 @@ def _draw_mesh(
     ax.set_aspect("equal")
 
 
-def _draw_contact(ax: Axes, picture: GearPicture, one: ToothContact, largest: float) -> None:
+def _draw_contact(ax: Axes, picture: GearPicture, contact: ToothContact, largest: float) -> None:
     """Mark where a pair meets, and draw its force on the gear."""
     module = picture.geometry.module
-    at = contact_points(picture, one.flank, one.place, one.gap)[1] / module
-    along = picture.line(one.flank, picture.geometry.approach + 1.0)
-    if abs(one.force) > _NO_ARROW * largest and one.state != ContactState.OPEN:
+    at = contact_points(picture, contact.flank, contact.place, contact.gap)[1] / module
+    along = picture.line(contact.flank, picture.geometry.approach + 1.0)
+    if abs(contact.force) > _NO_ARROW * largest and contact.state != ContactState.OPEN:
         # long enough to be seen beside the mark
-        length = _LONGEST * max(abs(one.force) / largest, 0.2)
+        length = _LONGEST * max(abs(contact.force) / largest, 0.2)
         ax.annotate(
             "",
-            tuple(at + along * math.copysign(length, one.force)),
+            tuple(at + along * math.copysign(length, contact.force)),
             tuple(at),
             arrowprops={
                 "arrowstyle": "-|>",
-                "color": POSITIVE if one.force > 0.0 else NEGATIVE,
+                "color": POSITIVE if contact.force > 0.0 else NEGATIVE,
                 "linewidth": 2.2,
                 "mutation_scale": 14,
                 "shrinkA": 0,
@@ -242,11 +244,11 @@ def _draw_contact(ax: Axes, picture: GearPicture, one: ToothContact, largest: fl
             },
             zorder=5,
         )
-    mark, face = _MARKS[one.state]
+    mark, face = _MARKS[contact.state]
     ax.plot(*at, mark, color="0.1", markerfacecolor=face, markersize=8, zorder=6)
     across = np.array([-along[1], along[0]]) * (1.0 if along[0] > 0.0 else -1.0)
     ax.annotate(
-        f"{one.pair}",
+        f"{contact.pair}",
         tuple(at + 0.42 * across),
         ha="center",
         va="center",
@@ -274,15 +276,15 @@ def _scale_bar(ax: Axes, module: float) -> None:
     )
 
 
-def _caption(ax: Axes, one: ToothContact, factor: float, joined: float, *, narrow: bool) -> None:
+def _caption(ax: Axes, contact: ToothContact, factor: float, joined: float, *, narrow: bool) -> None:
     """Say beside a close-up what it shows."""
-    flank = "drive" if one.flank == Flank.DRIVE else "coast"
+    flank = "drive" if contact.flank == Flank.DRIVE else "coast"
     parted = ",\n" if narrow else ", "
     lines = [
-        f"Pair {one.pair}, {flank} flank",
-        parted.join([f"gap {_quantity(one.gap, 'm')}", _force(one)]),
-        *([] if math.isnan(joined) else [f"{_joined_words(one)} {joined:.2g}"]),
-        parted.join(_states(one)),
+        f"Pair {contact.pair}, {flank} flank",
+        parted.join([f"gap {_quantity(contact.gap, 'm')}", _force(contact)]),
+        *([] if math.isnan(joined) else [f"{_joined_words(contact)} {joined:.2g}"]),
+        parted.join(_states(contact)),
     ]
     size = "x-small" if narrow else "small"
     ax.set_title("\n".join(lines), loc="left", fontsize=size)
@@ -295,22 +297,22 @@ def _caption(ax: Axes, one: ToothContact, factor: float, joined: float, *, narro
         ax.set_ylabel("height (nm)", fontsize="small", labelpad=1)
 
 
-def _joined_words(one: ToothContact) -> str:
-    return "expected asperities in contact" if one.asperities is None else "joined asperities:"
+def _joined_words(contact: ToothContact) -> str:
+    return "expected asperities in contact" if contact.asperities is None else "joined asperities:"
 
 
-def _force(one: ToothContact) -> str:
-    if one.force == 0.0:
+def _force(contact: ToothContact) -> str:
+    if contact.force == 0.0:
         return "no force"
-    return f"{'pushes' if one.force > 0.0 else 'pulls'} with {_quantity(abs(one.force), 'N')}"
+    return f"{'pushes' if contact.force > 0.0 else 'pulls'} with {_quantity(abs(contact.force), 'N')}"
 
 
-def _states(one: ToothContact) -> list[str]:
+def _states(contact: ToothContact) -> list[str]:
     """State of a pair in words, of its materials where they differ."""
-    if len(set(one.states.values())) == 1:
-        return [STATE_WORDS[one.state]]
+    if len(set(contact.states.values())) == 1:
+        return [STATE_WORDS[contact.state]]
     names = {"bare": "bare", "coated": "monolayer", "mixed": "monolayer on bare"}
-    return [f"{names[part]} {STATE_WORDS[state]}" for part, state in sorted(one.states.items())]
+    return [f"{names[part]} {STATE_WORDS[state]}" for part, state in sorted(contact.states.items())]
 
 
 def _headline(state: MeshState) -> str:

@@ -50,7 +50,7 @@ def contact_torque(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     runs = runs_of(ds, _TORQUE)
     ax = new_axes(ax, height=3.2 if len(runs) == 1 else 1.2 + 0.7 * len(runs))
     settled = [run.settled(_TORQUE) for run in runs]
-    low, high = min(each.low for each in settled), max(each.high for each in settled)
+    low, high = min(extent.low for extent in settled), max(extent.high for extent in settled)
     scale = scale_for(max(abs(low), abs(high)), "N m")
     if len(runs) == 1:
         _curve(ax, runs[0], low, high, scale)

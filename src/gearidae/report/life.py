@@ -17,19 +17,19 @@ from gearidae.scene.prefixes import with_prefix
 
 def life_table(ds: xr.Dataset) -> str:
     """List the steps of a life."""
-    sides = [str(each) for each in ds["side"].values]
+    sides = [str(side) for side in ds["side"].values]
     headings = ["passages", *(f"coverage, {side} (%)" for side in sides), "verdict"]
     headings += ["mean speed (rad/s)", "smallest speed (rad/s)"]
     if "characteristic_frequency" in ds:
         headings.append("ring frequency")
     rows = []
     for number in range(ds.sizes["passages"]):
-        one = ds.isel(passages=number)
-        row = [_count(one["passages"]), *(f"{100.0 * share:.4g}" for share in one["coverage"].values)]
-        row += [str(one["verdict"].values), f"{float(one['mean_gear_speed']):.5g}"]
-        row.append(f"{float(one['min_gear_speed']):.5g}")
+        state = ds.isel(passages=number)
+        row = [_count(state["passages"]), *(f"{100.0 * share:.4g}" for share in state["coverage"].values)]
+        row += [str(state["verdict"].values), f"{float(state['mean_gear_speed']):.5g}"]
+        row.append(f"{float(state['min_gear_speed']):.5g}")
         if "characteristic_frequency" in ds:
-            rings = float(one["characteristic_frequency"])
+            rings = float(state["characteristic_frequency"])
             row.append("-" if math.isnan(rings) else with_prefix(rings, "Hz", 4))
         rows.append(row)
     numeric = [place for place in range(len(headings)) if place != 1 + len(sides)]
@@ -64,9 +64,9 @@ def pack_life(ds: xr.Dataset) -> dict[str, Any]:
     """
     data: dict[str, Any] = {
         "passages": ds["passages"].values.tolist(),
-        "sides": [str(each) for each in ds["side"].values],
+        "sides": [str(side) for side in ds["side"].values],
         "coverage": [_numbers(ds["coverage"].sel(side=side).values) for side in ds["side"].values],
-        "verdict": [str(each) for each in ds["verdict"].values],
+        "verdict": [str(verdict) for verdict in ds["verdict"].values],
         "mean": _numbers(ds["mean_gear_speed"].values),
         "smallest": _numbers(ds["min_gear_speed"].values),
         "frequency": None,
@@ -83,7 +83,7 @@ def pack_life(ds: xr.Dataset) -> dict[str, Any]:
             "teeth": int(ds.sizes["tooth"]),
             "low": float(tables.min()),
             "high": float(tables.max()),
-            "tables": [base64.b64encode(each.astype("<f4").tobytes()).decode("ascii") for each in tables],
+            "tables": [base64.b64encode(table.astype("<f4").tobytes()).decode("ascii") for table in tables],
         }
     return data
 

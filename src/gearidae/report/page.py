@@ -88,20 +88,20 @@ def _specimen(ds: xr.Dataset) -> str:
 def _study_page(ds: xr.Dataset, kind: str) -> str:
     """Make the page about what a study has found."""
     study = studies()[kind]
-    found = answer(ds, kind)
+    result = answer(ds, kind)
     shown = html.section("pictures", "Pictures", figures(ds, usual_pictures(ds, kind)))
     sections: tuple[str, ...]
     if study.viewer == "life":
         viewer = html.section("life", "Over passages", life_viewer(ds))
         sections = (viewer, html.section("outcome", "Steps", life_table(ds)), shown)
-        return _page(ds, found.sentence, sections, ("common.js", "save.js", "life.js"))
-    rows = () if study.rows_are_drawn else found.rows
+        return _page(ds, result.sentence, sections, ("common.js", "save.js", "life.js"))
+    rows = () if study.rows_are_drawn else result.rows
     sections = (
         html.section("outcome", "Outcome", answer_tables(rows), law_table(ds)),
         shown,
         html.section("members", "Runs", member_table(ds, study.member_columns)),
     )
-    return _page(ds, found.sentence, sections, ("common.js", "save.js"))
+    return _page(ds, result.sentence, sections, ("common.js", "save.js"))
 
 
 def _page(ds: xr.Dataset, sentence: str, sections: Sequence[str], scripts: Sequence[str]) -> str:
@@ -113,7 +113,7 @@ def _page(ds: xr.Dataset, sentence: str, sections: Sequence[str], scripts: Seque
         html.section("provenance", "Provenance", provenance_list(ds)),
     )
     main = "\n".join(part for part in (*sections, *common) if part)
-    script = "\n".join(_resource(each) for each in scripts)
+    script = "\n".join(_resource(file) for file in scripts)
     return f"""<!DOCTYPE html>
 <html lang="en">
 <head>

@@ -69,5 +69,5 @@ def _drawn(ds: xr.Dataset, name: str, caption: str) -> tuple[str, str]:
     except SceneError:
         return "", ""
     figure = made if isinstance(made, Figure) else made.get_figure(root=True)
-    notes = dict.fromkeys(str(one.message) for one in caught if one.category is UserWarning)
+    notes = dict.fromkeys(str(warning.message) for warning in caught if warning.category is UserWarning)
     return drawing(figure, name, caption), "".join(f". {note[:1].upper()}{note[1:]}" for note in notes)

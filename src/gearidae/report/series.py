@@ -115,13 +115,13 @@ def _times(run: xr.Dataset, kind: EventKind) -> NDArray[np.float64]:
         return np.empty(0)
     total = count(run["event_kind"], kind)
     wanted = np.linspace(0, total - 1, min(total, _MOST_EVENTS)).astype(int)
-    found, passed = [np.empty(0)], 0
+    parts, passed = [np.empty(0)], 0
     for place, kinds in pieces(run["event_kind"]):
-        own = place + np.flatnonzero(kinds == kind)
-        here = wanted[(wanted >= passed) & (wanted < passed + own.size)] - passed
+        places = place + np.flatnonzero(kinds == kind)
+        here = wanted[(wanted >= passed) & (wanted < passed + places.size)] - passed
         if here.size:
-            first = int(own[here[0]])
-            times = run["event_time"].variable[first : int(own[here[-1]]) + 1].values
-            found.append(times[own[here] - first])
-        passed += own.size
-    return np.concatenate(found)
+            first = int(places[here[0]])
+            times = run["event_time"].variable[first : int(places[here[-1]]) + 1].values
+            parts.append(times[places[here] - first])
+        passed += places.size
+    return np.concatenate(parts)

@@ -68,7 +68,7 @@ def drawing(figure: Figure, prefix: str, title: str) -> str:
     text = re.sub(r'href="#([^"]*)"', rf'href="#{prefix}-\1"', text)
     text = re.sub(r"url\(#([^)]*)\)", rf"url(#{prefix}-\1)", text)
     text = _ATTRIBUTE.sub(r' style="\1: \2"', text)
-    text = _COLOUR.sub(lambda found: f"var(--c-{found[0][1:]})", text)
+    text = _COLOUR.sub(lambda match: f"var(--c-{match[0][1:]})", text)
     text = _LONG_NUMBER.sub(r"\1", text)
     return text.replace("<svg ", f'<svg role="img" aria-label="{html.text(title)}" ', 1).strip()
 

@@ -55,7 +55,7 @@ def outcome_table(ds: xr.Dataset) -> str:
     rtol = scene_of(ds)["run"]["rtol"]
     dims = swept_dims(ds)
     names = (*dims, *headings(judged[0]))
-    rows = [[*_label_cells(ds, each.label), *cells(each, rtol)] for each in judged]
+    rows = [[*_label_cells(ds, outcome.label), *cells(outcome, rtol)] for outcome in judged]
     numeric = [place for place in range(len(names)) if place != len(dims)]
     return html.table(names, rows, caption="Outcome of each run", numeric=numeric)
 
@@ -89,8 +89,8 @@ def member_table(ds: xr.Dataset, listed: Sequence[str]) -> str:
         drawn = [str(name) for name in ds.coords if name != "member" and ds[name].dims == ("member",)]
         columns = [*drawn, *listed]
         rows = [
-            [str(number), *(_value(one[name].item(), _unit(one[name])) for name in columns)]
-            for number, one in ((number, ds.isel(member=number)) for number in range(ds.sizes["member"]))
+            [str(number), *(_value(member[name].item(), _unit(member[name])) for name in columns)]
+            for number, member in ((number, ds.isel(member=number)) for number in range(ds.sizes["member"]))
         ]
         table = html.table(("member", *(name.replace("_", " ") for name in columns)), rows, caption="Members")
     elif "status" not in ds or "swept" not in ds.attrs:  # a map has no runs in it
@@ -102,9 +102,9 @@ def member_table(ds: xr.Dataset, listed: Sequence[str]) -> str:
             [
                 str(number),
                 *(_value(values.item(), _unit(values)) for values in values_of),
-                *cells(one, rtol),
+                *cells(member, rtol),
             ]
-            for number, (one, *values_of) in enumerate(
+            for number, (member, *values_of) in enumerate(
                 zip(judged, *(ds[name] for name in drawn), strict=True)
             )
         ]
@@ -127,19 +127,19 @@ def event_table(ds: xr.Dataset) -> str:
     """Count the events of each run and name the first and the hardest contact; nothing if events have not been kept."""
     if "event_kind" not in ds:
         return ""
-    found = [(label, _count_events(run)) for label, run in runs(ds)]
-    kinds = [kind for kind in EventKind if any(counted.counts[kind] for _, counted in found)]
+    events = [(label, _count_events(run)) for label, run in runs(ds)]
+    kinds = [kind for kind in EventKind if any(counted.counts[kind] for _, counted in events)]
     if not kinds:
         return html.paragraph("No events.")
     dims = swept_dims(ds)
     rows = []
-    for label, counted in found:
+    for label, counted in events:
         made = counted.counts[EventKind.ONSET]
         first = _measure(counted.first, "s") if made else "-"
         fastest = with_prefix(max(counted.fastest, 0.0), "m/s") if made else "-"
-        counts = [str(counted.counts[each]) for each in kinds]
+        counts = [str(counted.counts[kind]) for kind in kinds]
         rows.append([*_label_cells(ds, label), *counts, first, fastest])
-    names = [each.name.lower().replace("_", " ") for each in kinds]
+    names = [kind.name.lower().replace("_", " ") for kind in kinds]
     headings = [*dims, *names, "first onset", "fastest closing at an onset"]
     return html.table(headings, rows, caption="Events of each run", numeric=range(len(headings)))
 

@@ -162,12 +162,12 @@ class _Asperities:
         self.joined: list[float] = []
         self._drawn = lru_cache(maxsize=8)(self._read)  # pairs follow one another
 
-    def of(self, one: ToothContact) -> list[float]:
+    def of(self, contact: ToothContact) -> list[float]:
         """Return the last four numbers of a pair, see `PAIR`."""
-        points, row = self._drawn(one.pair, one.flank)
+        points, row = self._drawn(contact.pair, contact.flank)
         first = len(self.joined) // 2
-        self.joined += points[list(one.asperities or ())].ravel().tolist()
-        return [row, touching_arc(self.scene, one.place), first, len(self.joined) // 2]
+        self.joined += points[list(contact.asperities or ())].ravel().tolist()
+        return [row, touching_arc(self.scene, contact.place), first, len(self.joined) // 2]
 
     def _read(self, pair: int, flank: Flank) -> tuple[Floats, int]:
         """Places and heights of the asperities of a pair, shape (n, 2), and the number of the row of its tallest."""
@@ -181,17 +181,24 @@ def _row(asperities: _Asperities, state: MeshState, places: int) -> list[float]:
     """Return the numbers of a state; each of its pairs in a place of its own."""
     phase = state.travel / asperities.scene.geometry.base_pitch
     row = [state.time, phase % 1.0, state.transmission_error, state.gear_speed, state.mesh_force]
-    pairs = {one.pair % places: one for one in nearest_pairs(state, places)}
+    pairs = {contact.pair % places: contact for contact in nearest_pairs(state, places)}
     for place in range(places):
         row += _pair(asperities, pairs[place]) if place in pairs else [math.nan] * len(PAIR)
     return row
 
 
-def _pair(asperities: _Asperities, one: ToothContact) -> list[float]:
-    joined = [one.joined.get(part, math.nan) for part in MATERIAL_NAMES]
-    states = [float(one.states[part]) if part in one.states else math.nan for part in MATERIAL_NAMES]
-    numbers = [float(one.pair), float(one.flank), one.place, one.radius, one.gap, one.force]
-    return [*numbers, *joined, *states, joined_asperities(asperities.scene, one), *asperities.of(one)]
+def _pair(asperities: _Asperities, contact: ToothContact) -> list[float]:
+    joined = [contact.joined.get(part, math.nan) for part in MATERIAL_NAMES]
+    states = [float(contact.states[part]) if part in contact.states else math.nan for part in MATERIAL_NAMES]
+    numbers = [
+        float(contact.pair),
+        float(contact.flank),
+        contact.place,
+        contact.radius,
+        contact.gap,
+        contact.force,
+    ]
+    return [*numbers, *joined, *states, joined_asperities(asperities.scene, contact), *asperities.of(contact)]
 
 
 def _wheel(wheel: ToothedWheel, module: float) -> dict[str, Any]:

@@ -105,8 +105,8 @@ class Batch:
         """Put what the runs have left behind into one dataset; runs that are missing were interrupted."""
         none = unsolved("interrupted", "the sweep was interrupted before this run was finished")
         missing = RunResult(none, "unfinished")
-        found = [self._done.get(number, missing) for number in range(len(self._scenes))]
-        solutions = [each.solution for each in found]
+        results = [self._done.get(number, missing) for number in range(len(self._scenes))]
+        solutions = [result.solution for result in results]
         ds = stack(
             self._plan.base,
             self._plan.axes,
@@ -119,7 +119,7 @@ class Batch:
             return ds
         dims = ds["status"].dims
         for name, variable in VERDICT.items():
-            values = np.array([getattr(each, name) for each in found], dtype=variable.dtype)
+            values = np.array([getattr(result, name) for result in results], dtype=variable.dtype)
             ds[name] = (dims, values.reshape(ds["status"].shape), variable.attributes)
         return ds
 
@@ -189,7 +189,7 @@ class Batch:
 
     def _group_size(self) -> int:
         """How many runs to send together, by how long those took that are there; 0 if that is not known."""
-        longest = max((each.solution.statistics.wall_time for each in self._done.values()), default=0.0)
+        longest = max((result.solution.statistics.wall_time for result in self._done.values()), default=0.0)
         return min(max(int(_TOGETHER / longest), 1), _MOST_TOGETHER) if longest > 0.0 else 0
 
     def _solve_here(self, number: int) -> list[RunResult]:

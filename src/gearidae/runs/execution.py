@@ -105,8 +105,8 @@ class Execution:
             return
         # processes take seconds to start: only on request
         workers = self.threads() or (1 if self.jobs is None else self.jobs)
-        with own_executor(workers, calls, releases_gil=self.threads() > 0) as own:
-            yield own
+        with own_executor(workers, calls, releases_gil=self.threads() > 0) as executor:
+            yield executor
 
     @contextmanager
     def side_by_side(
@@ -122,8 +122,8 @@ class Execution:
             def run(
                 function: Any, scenes: Sequence[Scene], *arguments: Any
             ) -> Iterator[tuple[Solution, str]]:
-                for found in solutions(kept, executor, function, scenes, *arguments, self.backend):
-                    yield found
+                for solved in solutions(kept, executor, function, scenes, *arguments, self.backend):
+                    yield solved
                     report(float(min(next(done), usual)), usual)  # of what has been taken in
 
             yield run
@@ -283,8 +283,8 @@ def interruptible(
     try:
         yield
     except KeyboardInterrupt as interrupt:
-        found = interrupt.dataset if isinstance(interrupt, Interrupted) else so_far()
-        ds = found.assign_attrs(about or {})
+        partial = interrupt.dataset if isinstance(interrupt, Interrupted) else so_far()
+        ds = partial.assign_attrs(about or {})
         if keep is not None:
             keep(ds)
         where = "the error's dataset has what was found so far" if ds.sizes else "nothing of it is kept"
@@ -295,8 +295,8 @@ def interruptible(
 
 def origin_of(scene: Scene) -> dict[str, str]:
     """Return the attributes that say of which scene a dataset is, and of which version of the program."""
-    found = provenance(scene, "")
-    return {"scene": str(found["scene"]), "source": str(found["source"])}
+    attributes = provenance(scene, "")
+    return {"scene": str(attributes["scene"]), "source": str(attributes["source"])}
 
 
 def solutions(
@@ -318,13 +318,13 @@ def solutions(
     Solution, str
         In the order of the scenes.
     """
-    taken = [None if kept is None else kept.take(each) for each in scenes]
-    left = [scene for scene, one in zip(scenes, taken, strict=True) if one is None]
-    repeated: list[Iterable[Any]] = [[each] * len(left) for each in arguments]
+    taken = [None if kept is None else kept.take(scene) for scene in scenes]
+    left = [scene for scene, entry in zip(scenes, taken, strict=True) if entry is None]
+    repeated: list[Iterable[Any]] = [[argument] * len(left) for argument in arguments]
     fresh = side_by_side(executor, function, left, *repeated)
-    for scene, one in zip(scenes, taken, strict=True):
-        if one is not None:
-            yield one[0], str(one[1].get("verdict", ""))
+    for scene, entry in zip(scenes, taken, strict=True):
+        if entry is not None:
+            yield entry[0], str(entry[1].get("verdict", ""))
             continue
         solution, word = next(fresh)
         if kept is not None and solution.status == "finished":

@@ -109,9 +109,9 @@ def _check_workers(client: Any, address: str) -> None:
 
     for worker, answer in client.run(version, on_error="return").items():
         if answer != __version__:
-            found = answer if isinstance(answer, str) else f"{type(answer).__name__}: {answer}"
+            installed = answer if isinstance(answer, str) else f"{type(answer).__name__}: {answer}"
             raise SceneError(
-                "--dask", address, f"its worker {worker} needs gearidae {__version__}, and has: {found}"
+                "--dask", address, f"its worker {worker} needs gearidae {__version__}, and has: {installed}"
             )
 
 

@@ -114,7 +114,9 @@ class KeptRuns:
             **{kind.field: getattr(solution, kind.field).table() for kind in ROWS},
         }
         try:
-            self._store.put(self.key(scene), header, {name: one for name, one in tables.items() if one.size})
+            self._store.put(
+                self.key(scene), header, {name: table for name, table in tables.items() if table.size}
+            )
         except OSError as error:
             if not self._warned:
                 warnings.warn(f"finished runs cannot be kept in {self.folder} ({error})", stacklevel=2)
@@ -127,8 +129,8 @@ class KeptRuns:
         """
         key = self.key(scene)
         try:
-            found = self._store.take(key)
-            return None if found is None else _rebuilt(*found)
+            entry = self._store.take(key)
+            return None if entry is None else _rebuilt(*entry)
         except Exception as error:  # what a damaged file makes the libraries raise may be anything
             path = self._store.path(key)
             warnings.warn(f"{path} is ignored and its run computed again ({error})", stacklevel=2)
@@ -185,6 +187,6 @@ def _rebuilt(header: dict[str, Any], tables: Mapping[str, NDArray[Any]]) -> tupl
         extremes=extremes and Extremes({**extremes, "exposures": array("d", extremes["exposures"])}),
         **rows,
     )
-    found = {name: header["judged"][name] for name in VERDICT}
+    judged = {name: header["judged"][name] for name in VERDICT}
     kinds = {name: str if variable.dtype is np.str_ else int for name, variable in VERDICT.items()}
-    return solution, {name: kinds[name](value) for name, value in found.items() if value is not None}
+    return solution, {name: kinds[name](value) for name, value in judged.items() if value is not None}

@@ -42,16 +42,16 @@ def _sizes(scene: Scene) -> list[str]:
     """Compare the roughness and the asperities with the bodies that carry them."""
     sigma = scene.surface.roughness
     rough = f"surface.roughness = {with_prefix(sigma, 'm')}"
-    found = []
+    lines = []
     if scene.mesh is not None and scene.gears is not None:
         module, width = scene.geometry.module, scene.gears.face_width
         if sigma > scene.mesh.backlash:
-            found.append(
+            lines.append(
                 f"{rough} is larger than mesh.backlash = {with_prefix(scene.mesh.backlash, 'm')}: "
                 "both flanks are pressed together all the time"
             )
         if _PEAKS * sigma > module:
-            found.append(
+            lines.append(
                 f"{rough}: peaks of {_PEAKS:g} roughnesses are higher than the addendum of the teeth, "
                 f"{with_prefix(module, 'm')}"
             )
@@ -59,22 +59,22 @@ def _sizes(scene: Scene) -> list[str]:
         assert scene.roller is not None
         module, width = scene.roller.radius, scene.roller.width
         if _PEAKS * sigma > module:
-            found.append(
+            lines.append(
                 f"{rough}: peaks of {_PEAKS:g} roughnesses are higher than roller.radius = "
                 f"{with_prefix(module, 'm')}"
             )
     tip, spacing = scene.surface.asperity_radius, 1.0 / math.sqrt(scene.surface.asperity_density)
     if tip > module:
-        found.append(
+        lines.append(
             f"surface.asperity_radius = {with_prefix(tip, 'm')} is larger than the tooth or the roller that "
             f"carries it, {with_prefix(module, 'm')}"
         )
     if spacing > width:
-        found.append(
+        lines.append(
             f"surface.asperity_density: asperities stand {with_prefix(spacing, 'm')} apart, more than the "
             f"face width of {with_prefix(width, 'm')}"
         )
-    return found
+    return lines
 
 
 def _bodies(scene: Scene) -> list[str]:
@@ -99,7 +99,7 @@ def _resistance(scene: Scene) -> list[str]:
     if load is None or not load.harmonic:
         return []
     least = load.torque + min((value for _, value in load.schedule), default=0.0)
-    swing = sum(abs(one.amplitude) for one in load.harmonic)
+    swing = sum(abs(harmonic.amplitude) for harmonic in load.harmonic)
     if swing <= least:
         return []
     about = f"{with_prefix(swing, 'N m')} about a dry resistance of {with_prefix(least, 'N m')}"

@@ -51,7 +51,7 @@ def flank_coefficient(scene: Scene, load: float) -> float:
     if math.isnan(gap):
         return math.nan if shear else sum(values[part.name] * part.share for part in contact.parts)
     counted = contact.part_areas(gap) if shear else contact.part_forces(gap)
-    return max(sum(value * one for value, one in zip(there, counted, strict=True)) / load, 0.0)
+    return max(sum(value * amount for value, amount in zip(there, counted, strict=True)) / load, 0.0)
 
 
 def flank_loss(scene: Scene, load: float) -> float:
@@ -123,7 +123,9 @@ _NEAR_LOCKING: Final = 0.5
 def locking_rows(scene: GearScene) -> Iterator[ValidityRow]:
     """Compare coefficients of friction with those that lock the teeth or a hub; nothing where they are zero."""
     gears, geometry, values = scene.gears, scene.geometry, friction_values(scene)
-    where = max((values[one.name] for one in scene.materials() if one.share > 0.0), default=0.0)
+    where = max(
+        (values[material.name] for material in scene.materials() if material.share > 0.0), default=0.0
+    )
     if has_flank_friction(scene) and scene.contact.friction_law == "coulomb":
         locks = min(locking_coefficients(geometry))
         yield _near_locking("locking_teeth", "coefficient of friction of the flanks", where, locks, "teeth")

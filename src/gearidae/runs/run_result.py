@@ -73,14 +73,14 @@ def solve_group(scenes: Sequence[Scene], backend: str, keep: Keep) -> list[RunRe
     list of RunResult
         Up to the first that was interrupted.
     """
-    found: list[RunResult] = []
+    results: list[RunResult] = []
     for scene in scenes:
         try:
-            found.append(solve_and_leave(scene, backend, keep))
+            results.append(solve_and_leave(scene, backend, keep))
         except SceneError:
             raise
         except Exception as error:
-            found.append(crashed(scene, error, keep))
-        if found[-1].solution.status == "interrupted":
+            results.append(crashed(scene, error, keep))
+        if results[-1].solution.status == "interrupted":
             break
-    return found
+    return results

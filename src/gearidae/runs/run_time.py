@@ -99,7 +99,10 @@ def run_time(scene: Scene) -> RunTime:
         cost, setup = max(cost, _ELASTIC_STEP), _ELASTIC_SETUP
     if scene.contact.is_discrete:
         stiffness = asperity_stiffness(scene)
-        frequency = max(math.sqrt(stiffness / rest.mass) / (2.0 * math.pi), *(one[1] for one in oscillations))
+        frequency = max(
+            math.sqrt(stiffness / rest.mass) / (2.0 * math.pi),
+            *(oscillation[1] for oscillation in oscillations),
+        )
         rate, cost = _STEPS_OF_ONE * frequency, max(cost, _POPULATION_STEP)
     steps = (steps + rate * scene.run.duration) * (scene.run.rtol / 1e-6) ** -_ORDER
     return RunTime(steps, setup + steps * cost, frequency)
@@ -128,7 +131,9 @@ def _passages(scene: GearScene) -> float:
     speed = balanced_speed(scene, mean_drive_torque(scene))
     speed = max(abs(scene.initial.gear_speed), speed if math.isfinite(speed) else 0.0)
     harmonics = (*scene.drive.harmonic, *scene.load.harmonic)
-    fastest = max((one.frequency or 0.0 for one in harmonics if one.amplitude != 0.0), default=0.0)
+    fastest = max(
+        (harmonic.frequency or 0.0 for harmonic in harmonics if harmonic.amplitude != 0.0), default=0.0
+    )
     return scene.run.duration * (speed * scene.gears.gear_teeth / (2.0 * math.pi) + fastest)
 
 

@@ -75,8 +75,8 @@ def prepare(
 
     engine.choose_backend(backend, scene.run.method)  # refuses what is unknown or cannot work here
     settings = {"run.rtol": rtol, "run.duration": t_end, "run.samples": samples}
-    given = {key: value for key, value in settings.items() if value is not None}
-    return scene.replace(given) if given else scene
+    changes = {key: value for key, value in settings.items() if value is not None}
+    return scene.replace(changes) if changes else scene
 
 
 def _require_memory() -> None:

@@ -65,15 +65,15 @@ def stream(
     SceneError, SolverError, Interrupted
         As `gearidae.simulate` says.
     """
-    found = _found(target, scene, start) if resume and target.exists() else None
-    if found is not None and found.attrs["status"] == "finished":
+    unfinished = _found(target, scene, start) if resume and target.exists() else None
+    if unfinished is not None and unfinished.attrs["status"] == "finished":
         drop_checkpoints(target)  # a kill may have left one
-        return found
-    if found is not None:
-        backend = _same_backend(backend, str(found.attrs["backend"]))
-        found.close()
+        return unfinished
+    if unfinished is not None:
+        backend = _same_backend(backend, str(unfinished.attrs["backend"]))
+        unfinished.close()
     run = _Run(scene, target, engine.choose_backend(backend, scene.run.method), start)
-    with run.take_up() if found is not None else run.begin() as archive:
+    with run.take_up() if unfinished is not None else run.begin() as archive:
         with run_progress(progress, run.end) as report:
             ended = run.follow(archive, report, watched(report, on_block))
         run.leave(archive, ended)

@@ -86,8 +86,8 @@ def plan_sweep(
     stride = len(scenes)
     for group, length in zip(groups, map(len, steps), strict=True):
         stride //= length
-        own = [scenes[index * stride] for index in range(length)]
-        axis = {key: [scene_value(scene, key) for scene in own] for key in group}
+        along = [scenes[index * stride] for index in range(length)]
+        axis = {key: [scene_value(scene, key) for scene in along] for key in group}
         leader = next(iter(axis))
         seen = set()
         for index, value in enumerate(axis[leader]):
@@ -162,7 +162,7 @@ def _groups(listed: dict[str, list[Any]], zipped: bool | Collection[str]) -> lis
         if key not in together:
             groups.append({key: values})
         elif key == together[0]:
-            groups.append({each: listed[each] for each in together})
+            groups.append({name: listed[name] for name in together})
         elif len(values) != len(listed[together[0]]):
             raise SceneError(
                 key,

@@ -87,7 +87,7 @@ class ListedAsperities(tuple[ListedAsperity, ...]):
         """Columns of which any row says something, by their bare names, in SI units."""
         names = (self.along, *ListedAsperity._fields[1:])
         columns = {name: list(column) for name, column in zip(names, zip(*self, strict=True), strict=True)}
-        return {name: one for name, one in columns.items() if any(cell is not None for cell in one)}
+        return {name: cells for name, cells in columns.items() if any(cell is not None for cell in cells)}
 
 
 class AsperityList:
@@ -181,12 +181,12 @@ def check_asperities(scene: Scene) -> None:
             "must be 0 beside contact.asperities, which has radii",
         )
     teeth = 1 if scene.gears is None else scene.gears.pinion_teeth
-    for row, one in enumerate(listed, 1):
-        if one.tooth is not None and one.tooth >= teeth:
+    for row, asperity in enumerate(listed, 1):
+        if asperity.tooth is not None and asperity.tooth >= teeth:
             raise SceneError(
-                key, f"(row {row}, tooth {one.tooth})", f"must be below {teeth}: teeth count from 0"
+                key, f"(row {row}, tooth {asperity.tooth})", f"must be below {teeth}: teeth count from 0"
             )
-        if one.flank == "coast" and scene.roller is not None:
+        if asperity.flank == "coast" and scene.roller is not None:
             raise SceneError(key, f"(row {row}, flank coast)", "a roller has no coast flank")
 
 

@@ -66,20 +66,24 @@ def number_of(value: object, unit: str, stated: str = "") -> float | None:
     ValueError
         If it carries a unit that does not fit.
     """
-    own, plain = carried_unit(value)
+    carried, plain = carried_unit(value)
     plain = plain[()] if isinstance(plain, np.ndarray) and plain.ndim == 0 else plain
     if plain is np.ma.masked or type(plain).__name__ in _MISSING:
         return math.nan
     if isinstance(plain, timedelta | np.timedelta64):
-        own, plain = "s", plain.total_seconds() if isinstance(plain, timedelta) else _seconds(plain)
+        carried, plain = "s", plain.total_seconds() if isinstance(plain, timedelta) else _seconds(plain)
     if isinstance(plain, bool) or not isinstance(plain, Real):
         return None
     try:
         number = float(plain)
     except OverflowError:
         return math.inf
-    own = own or stated
-    return from_text(f"{number!r} {own}", unit) if own not in ("", unit) and math.isfinite(number) else number
+    carried = carried or stated
+    return (
+        from_text(f"{number!r} {carried}", unit)
+        if carried not in ("", unit) and math.isfinite(number)
+        else number
+    )
 
 
 def numbers_of(values: object, unit: str, stated: str = "") -> Floats:
@@ -97,25 +101,25 @@ def numbers_of(values: object, unit: str, stated: str = "") -> Floats:
         If something is no number, has a unit beside others without one, or one that does not fit; an entry of a list
         is named by its row from 1.
     """
-    own, plain = carried_unit(values)
+    carried, plain = carried_unit(values)
     if isinstance(plain, list | tuple) and not set(map(type, plain)) <= {int, float}:
         if any(isinstance(cell, str) for cell in plain):
             refuse_bare(plain)
-        return np.array([_entry(cell, unit, own or stated, row) for row, cell in enumerate(plain, 1)])
+        return np.array([_entry(cell, unit, carried or stated, row) for row, cell in enumerate(plain, 1)])
     cells = np.asarray(plain)
     if cells.dtype.kind in "OUST" and cells.ndim:
-        return numbers_of([*np.ma.asarray(plain)] if np.ma.isMA(plain) else [*cells], unit, own or stated)
+        return numbers_of([*np.ma.asarray(plain)] if np.ma.isMA(plain) else [*cells], unit, carried or stated)
     if cells.dtype.kind == "m":
-        cells, own = _seconds(cells), "s"
+        cells, carried = _seconds(cells), "s"
     elif (kind := cells.dtype.kind) not in "fiu":
         raise ValueError(f"holds {_KINDS.get(kind, f'entries of type {type(plain).__name__}')}, no numbers")
     numbers: Floats = cells.astype(np.float64)
     if np.ma.isMA(plain):
         numbers[np.ma.getmaskarray(plain)] = np.nan
-    if (own := own or stated) in ("", unit):
+    if (carried := carried or stated) in ("", unit):
         return numbers
-    zero = from_text(f"0 {own}", unit)
-    numbers *= from_text(f"1 {own}", unit, difference=True)
+    zero = from_text(f"0 {carried}", unit)
+    numbers *= from_text(f"1 {carried}", unit, difference=True)
     return numbers + zero if zero else numbers
 
 

@@ -66,9 +66,9 @@ def verdict_codes(words: Sequence[str] | NDArray[np.str_]) -> NDArray[np.int8]:
     ndarray of int8
         Of the same shape, see `VerdictCode`.
     """
-    given = np.asarray(words)
-    found = np.array([_CODES[str(word)] for word in given.ravel()], dtype=np.int8)
-    return found.reshape(given.shape)
+    texts = np.asarray(words)
+    codes = np.array([_CODES[str(word)] for word in texts.ravel()], dtype=np.int8)
+    return codes.reshape(texts.shape)
 
 
 def sticking(codes: NDArray[np.int8]) -> NDArray[np.float64]:

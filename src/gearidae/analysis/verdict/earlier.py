@@ -17,19 +17,19 @@ OLD = "; judged by the rule of version 0.2, run it again for the present one"
 """What is added to the words of such a verdict."""
 
 
-def is_earlier(found: Extremes) -> bool:
+def is_earlier(extremes: Extremes) -> bool:
     """Whether a run of gears has been kept without what free gears would have done."""
-    return math.isnan(found.followed_time)
+    return math.isnan(extremes.followed_time)
 
 
 def earlier_verdict(
-    found: Extremes, status: str, scene: Mapping[str, Any], *, scheduled: bool
+    extremes: Extremes, status: str, scene: Mapping[str, Any], *, scheduled: bool
 ) -> tuple[str | None, bool]:
     """Judge a run of version 0.2.
 
     Parameters
     ----------
-    found : Extremes
+    extremes : Extremes
         Of the run; its `stick_time` is that of a fall of the speed to zero where the gear still is, or goes back from.
     status : str
         How the run ended.
@@ -45,16 +45,16 @@ def earlier_verdict(
     old : bool
         Whether it is that of the rule of version 0.2.
     """
-    if math.isnan(found.stick_time) or (scheduled and status != "finished"):
+    if math.isnan(extremes.stick_time) or (scheduled and status != "finished"):
         return None, False
     weakest, strongest = _drive_beyond_load(scene)
-    if found.turned_back > HALF_PITCH:
+    if extremes.turned_back > HALF_PITCH:
         return ("turns back", False) if weakest > 0.0 and _turns_back(scene) else ("runs back", scheduled)
     if weakest > 0.0:
         return "sticks", False
     if strongest <= 0.0:
         return "stops", False
-    if scheduled and found.last_min_gear_speed > 0.0:
+    if scheduled and extremes.last_min_gear_speed > 0.0:
         return "runs", True
     return ("stops" if scheduled else "sticks"), True
 
@@ -78,7 +78,7 @@ def _turns_back(scene: Mapping[str, Any]) -> bool:
 def _range(shaft: Mapping[str, Any]) -> tuple[float, float]:
     """Least and largest torque of a shaft [N m], of all times and angles."""
     constant = float(shaft.get("torque") or 0.0)
-    amplitude = sum(abs(float(one["amplitude"])) for one in shaft.get("harmonic") or [])
+    amplitude = sum(abs(float(harmonic["amplitude"])) for harmonic in shaft.get("harmonic") or [])
     schedule = shaft.get("schedule") or []
     knots = schedule["knots"] if isinstance(schedule, Mapping) else schedule
     values = [float(value) for _, value in knots] or [0.0]

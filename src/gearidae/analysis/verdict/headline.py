@@ -28,7 +28,7 @@ def headline(ds: xr.Dataset) -> str:
     subject = "roller" if isinstance(judged[0], RollerOutcome) else "gear"
     if len(judged) == 1:
         return f"The {subject} {judged[0].words}."
-    counts = Counter(each.verdict for each in judged)
+    counts = Counter(outcome.verdict for outcome in judged)
     counted = ", ".join(f"{verdict} {count}" for verdict, count in counts.most_common())
     return f"{len(judged)} runs: {counted}.{_limit(ds, subject, judged)}"
 
@@ -37,11 +37,11 @@ def _limit(ds: xr.Dataset, subject: str, judged: Sequence[GearOutcome | RollerOu
     """Name the two values between which the verdict changes to sticking, if there are two and no more."""
     dims = swept_dims(ds)
     values = ds[dims[0]].values if len(dims) == 1 else np.empty(0, dtype=object)
-    if values.dtype.kind not in "fiu" or any(each.verdict == "unfinished" for each in judged):
+    if values.dtype.kind not in "fiu" or any(outcome.verdict == "unfinished" for outcome in judged):
         return ""
     order = np.argsort(values)
     stuck = [judged[place].verdict in STUCK for place in order]
-    changes = [k for k, (one, other) in enumerate(pairwise(stuck)) if one != other]
+    changes = [k for k, (before, after) in enumerate(pairwise(stuck)) if before != after]
     if len(changes) != 1:
         return ""
     low, high = (f"{values[order[k]]:g}" for k in (changes[0], changes[0] + 1))

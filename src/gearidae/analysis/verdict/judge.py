@@ -32,47 +32,47 @@ def verdict_of(scene: Scene, solution: Solution) -> tuple[str, int, int]:
     impacts, flank_changes : int
         Contacts made (onset events), and how often contact went over to the other flank.
     """
-    kinds, found, status = solution.events.kind, solution.extremes, solution.status
+    kinds, extremes, status = solution.events.kind, solution.extremes, solution.status
     impacts, changes = (
         int(np.count_nonzero(kinds == kind)) for kind in (EventKind.ONSET, EventKind.FLANK_CHANGE)
     )
     if scene.roller is not None:
-        return roller_verdict(found, status, impacts, in_touch([kinds])), impacts, changes
-    return gear_verdict(found, status, scheduled=is_scheduled(scene.to_dict())), impacts, changes
+        return roller_verdict(extremes, status, impacts, in_touch([kinds])), impacts, changes
+    return gear_verdict(extremes, status, scheduled=is_scheduled(scene.to_dict())), impacts, changes
 
 
-def gear_verdict(found: Extremes | None, status: str, *, scheduled: bool) -> str:
+def gear_verdict(extremes: Extremes | None, status: str, *, scheduled: bool) -> str:
     """Judge the run of a gear pair.
 
     Where it stands is judged alike for every torque, by the motion beside that of free gears.
 
     Parameters
     ----------
-    found : Extremes or None
+    extremes : Extremes or None
         None if the run has left none.
     status : str
         How the run ended.
     scheduled : bool
         Whether speeds change because they are asked to, see `is_scheduled`; how a gear turns is then not judged.
     """
-    if found is None or (scheduled and status != "finished"):
+    if extremes is None or (scheduled and status != "finished"):
         return "unfinished"
-    if not math.isnan(found.stick_time):
-        return standing_verdict(found.free_advance, found.driven_time, found.followed_time)
+    if not math.isnan(extremes.stick_time):
+        return standing_verdict(extremes.free_advance, extremes.driven_time, extremes.followed_time)
     if (
-        found.turned_back > 0.0
+        extremes.turned_back > 0.0
     ):  # the last movement of more than half a pitch was back; a smaller one may follow
-        return "turns back" if found.free_turned_back >= 0.5 * found.turned_back else "runs back"
+        return "turns back" if extremes.free_turned_back >= 0.5 * extremes.turned_back else "runs back"
     if status != "finished":
         return "unfinished"
     if scheduled:
-        return "runs" if found.last_min_gear_speed > 0.0 else "irregular"
-    return _turning(found)
+        return "runs" if extremes.last_min_gear_speed > 0.0 else "irregular"
+    return _turning(extremes)
 
 
-def has_stuck(found: Extremes) -> bool:
+def has_stuck(extremes: Extremes) -> bool:
     """Whether a run counts as sticking, whatever its torques are."""
-    return gear_verdict(found, "finished", scheduled=True) in STUCK
+    return gear_verdict(extremes, "finished", scheduled=True) in STUCK
 
 
 def standing_verdict(free_advance: float, driven_time: float, until: float) -> str:
@@ -80,12 +80,12 @@ def standing_verdict(free_advance: float, driven_time: float, until: float) -> s
     return "sticks" if is_driven(free_advance, driven_time, until) else "stops"
 
 
-def roller_verdict(found: Extremes | None, status: str, impacts: int, touching: bool) -> str:
+def roller_verdict(extremes: Extremes | None, status: str, impacts: int, touching: bool) -> str:
     """Judge the run of a roller.
 
     Parameters
     ----------
-    found : Extremes or None
+    extremes : Extremes or None
         None if the run has left none.
     status : str
         How the run ended.
@@ -94,9 +94,9 @@ def roller_verdict(found: Extremes | None, status: str, impacts: int, touching: 
     touching : bool
         Whether it touches the plane at the end.
     """
-    if status != "finished" or found is None:
+    if status != "finished" or extremes is None:
         return "unfinished"
-    if impacts and not touching and found.final_speed > 0.0:
+    if impacts and not touching and extremes.final_speed > 0.0:
         return "rebounds"
     return "sticks" if impacts else "flies"
 
@@ -129,13 +129,13 @@ def is_scheduled(scene: Mapping[str, Any]) -> bool:
     return bool(drive.get("schedule") or load.get("schedule") or isinstance(held, (dict, list)))
 
 
-def _turning(found: Extremes) -> str:
+def _turning(extremes: Extremes) -> str:
     """How a gear turned that has not come to stand."""
-    allowed = IRREGULAR_ABOVE * found.settled_gear_speed
-    if found.settled_spread <= allowed:
+    allowed = IRREGULAR_ABOVE * extremes.settled_gear_speed
+    if extremes.settled_spread <= allowed:
         return "turns smoothly"
-    if min(found.speed_fall, found.speed_rise) > allowed:
+    if min(extremes.speed_fall, extremes.speed_rise) > allowed:
         return "irregular"
-    if found.late_spread <= IRREGULAR_ABOVE * found.late_gear_speed:
+    if extremes.late_spread <= IRREGULAR_ABOVE * extremes.late_gear_speed:
         return "turns smoothly"
-    return "running up" if found.speed_rise > found.speed_fall else "running down"
+    return "running up" if extremes.speed_rise > extremes.speed_fall else "running down"

@@ -236,14 +236,14 @@ def outcomes(ds: xr.Dataset) -> list[GearOutcome | RollerOutcome]:
 
 def _gear(label: dict[str, Any], run: xr.Dataset) -> GearOutcome:
     status, scene = str(run_value(run, "status")), scene_of(run)
-    found, scheduled = extremes_of(run), is_scheduled(scene)
+    extremes, scheduled = extremes_of(run), is_scheduled(scene)
     verdict, old = None, False
-    if found is not None and is_earlier(found):
-        verdict, old = earlier_verdict(found, status, scene, scheduled=scheduled)
+    if extremes is not None and is_earlier(extremes):
+        verdict, old = earlier_verdict(extremes, status, scene, scheduled=scheduled)
         if verdict is None:
-            found = Extremes(found, turned_back=0.0)
-    verdict = verdict or gear_verdict(found, status, scheduled=scheduled)
-    kept = found or Extremes()
+            extremes = Extremes(extremes, turned_back=0.0)
+    verdict = verdict or gear_verdict(extremes, status, scheduled=scheduled)
+    kept = extremes or Extremes()
     return GearOutcome(
         label=label,
         status=status,
@@ -267,22 +267,22 @@ def _gear(label: dict[str, Any], run: xr.Dataset) -> GearOutcome:
 
 
 def _roller(label: dict[str, Any], run: xr.Dataset) -> RollerOutcome:
-    found = extremes_of(run)
+    extremes = extremes_of(run)
     status = str(run_value(run, "status"))
     if "event_kind" not in run:
         raise SceneError("dataset", "without events", "must have them: a roller is judged by its events")
     impacts = count(run["event_kind"], EventKind.ONSET)
     kinds = (values for _, values in pieces(run["event_kind"]))
-    verdict, restitution = roller_verdict(found, status, impacts, in_touch(kinds)), math.nan
-    if verdict == "rebounds" and found is not None:
+    verdict, restitution = roller_verdict(extremes, status, impacts, in_touch(kinds)), math.nan
+    if verdict == "rebounds" and extremes is not None:
         approach = float(label.get("speed", label.get("roller_speed", scene_of(run)["roller"]["speed"])))
-        restitution = found.final_speed / abs(approach) if approach != 0.0 else math.nan
+        restitution = extremes.final_speed / abs(approach) if approach != 0.0 else math.nan
     return RollerOutcome(
         label=label,
         status=status,
         verdict=verdict,
-        peak_force=max(found.largest_mesh_force, 0.0) if found else 0.0,
-        pull_off_force=max(-found.smallest_mesh_force, 0.0) if found else 0.0,
+        peak_force=max(extremes.largest_mesh_force, 0.0) if extremes else 0.0,
+        pull_off_force=max(-extremes.smallest_mesh_force, 0.0) if extremes else 0.0,
         restitution=restitution,
         impacts=impacts,
         wall_time=float(run_value(run, "wall_time")),
@@ -302,7 +302,7 @@ def _kept(ds: xr.Dataset) -> list[GearOutcome | RollerOutcome]:
     columns = {name: ds[name].values.ravel().tolist() for name in _KEPT if name in ds}
     scheduled = is_scheduled(scene_of(ds))
     windows = run_labels(ds, dims).get("duration", [ds.attrs["t_end"]] * math.prod(ds["verdict"].shape))
-    roller, found = is_roller(ds), list[GearOutcome | RollerOutcome]()
+    roller, judged = is_roller(ds), list[GearOutcome | RollerOutcome]()
     for number, label in enumerate(labels):
         row = _KEPT | {name: values[number] for name, values in columns.items()}
         both = {name: row[name] for name in ("status", "verdict", "impacts", "wall_time")}
@@ -311,7 +311,7 @@ def _kept(ds: xr.Dataset) -> list[GearOutcome | RollerOutcome]:
         if roller:
             forces = row["largest_mesh_force"], -row["smallest_mesh_force"]
             peak, pull = (max(force, 0.0) for force in forces)  # NaN first, which max leaves where it is
-            found.append(RollerOutcome(**both, peak_force=peak, pull_off_force=pull, restitution=math.nan))
+            judged.append(RollerOutcome(**both, peak_force=peak, pull_off_force=pull, restitution=math.nan))
         else:
             numbers = {"min_speed": row["min_gear_speed"], "max_speed": row["max_gear_speed"]}
             stood = row["back_time"] if math.isnan(row["stick_time"]) else row["stick_time"]
@@ -320,8 +320,8 @@ def _kept(ds: xr.Dataset) -> list[GearOutcome | RollerOutcome]:
             numbers |= {"holding": Holding(row["holding"]), "scheduled": scheduled}
             numbers["reached"] = row["followed_time"]
             numbers["old"] = scheduled and "followed_time" not in columns
-            found.append(GearOutcome(**both, **numbers, window=float(windows[number])))
-    return found
+            judged.append(GearOutcome(**both, **numbers, window=float(windows[number])))
+    return judged
 
 
 _KEPT: dict[str, Any] = {

@@ -37,17 +37,19 @@ def standstill_rows(ds: xr.Dataset) -> tuple[list[str], list[list[Any]]]:
             "need runs of gears of this version; a sweep keeps them with its extremes",
         )
     rows = [
-        [*label.values(), *(one[name] for name in _SHOWN)] for label, run in runs(ds) for one in _of_run(run)
+        [*label.values(), *(standstill[name] for name in _SHOWN)]
+        for label, run in runs(ds)
+        for standstill in _of_run(run)
     ]
     return [*swept_dims(ds), *_SHOWN], rows
 
 
 def _of_run(run: xr.Dataset) -> list[dict[str, Any]]:
-    found = []
+    standstills = []
     for numbers in standstills_from_text(run[STANDSTILL_LIST.name].item() or "[]"):
-        one: dict[str, Any] = dict(zip(COLUMNS, numbers, strict=True))
-        end = float(run["followed_time"]) if math.isnan(one["end"]) else one["end"]
-        one["held_by"] = Holding(int(one["holding"])).words
-        one["verdict"] = standing_verdict(one["free_advance"], one["driven_time"], end)
-        found.append(one)
-    return found
+        standstill: dict[str, Any] = dict(zip(COLUMNS, numbers, strict=True))
+        end = float(run["followed_time"]) if math.isnan(standstill["end"]) else standstill["end"]
+        standstill["held_by"] = Holding(int(standstill["holding"])).words
+        standstill["verdict"] = standing_verdict(standstill["free_advance"], standstill["driven_time"], end)
+        standstills.append(standstill)
+    return standstills

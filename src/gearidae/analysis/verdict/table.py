@@ -73,11 +73,11 @@ def _table(outcomes: Sequence[Any]) -> str:
     headings = [*first.label, "outcome", *(_COLUMNS[name][0] for name in names)]
     rows = [
         [
-            *(_plain(value) for value in one.label.values()),
-            one.words,
-            *(_number(name, getattr(one, name)) for name in names),
+            *(_plain(value) for value in outcome.label.values()),
+            outcome.words,
+            *(_number(name, getattr(outcome, name)) for name in names),
         ]
-        for one in outcomes
+        for outcome in outcomes
     ]
     head = "".join(f"<th>{html.escape(str(text))}</th>" for text in headings)
     body = "".join(f"<tr>{''.join(f'<td>{html.escape(cell)}</td>' for cell in row)}</tr>" for row in rows)
