@@ -219,7 +219,7 @@ def _chi_square_of(
 ) -> tuple[Floats, int]:
     """Chi-square of every fraction, and the number of impacts compared.
 
-    Impact n is compared with the map's n, or with its n + n0 with the best n0. `uncertainty` is the relative uncertainty of
+    Impact n is compared with the map's n, or with its n + n0 with the best n0. `uncertainty` is the relative one of
     what each fraction predicts for one impact, beside `_MODEL`.
     """
     numbers, x = rings.numbers, np.log(rings.frequency)

@@ -190,7 +190,7 @@ def materials_of(coating: Coating, surface: Surface) -> tuple[Material, ...]:
         In the order of `MATERIAL_NAMES`, mixed with independent sides only; shares add up to 1. Those of fractions by
         tooth and place are means over all teeth that meet and along the path of contact.
     """
-    own = {
+    constants = {
         "coated": {"energy": coating.energy, "hamaker": coating.hamaker},
         "mixed": {
             "energy": math.sqrt(coating.energy * surface.energy),
@@ -199,7 +199,7 @@ def materials_of(coating: Coating, surface: Surface) -> tuple[Material, ...]:
     }
     return tuple(
         Material(
-            surface if name == "bare" else surface.model_copy(update=own[name]),
+            surface if name == "bare" else surface.model_copy(update=constants[name]),
             share,
             _RECESSES[name] * coating.thickness,
             name,

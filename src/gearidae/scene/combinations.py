@@ -48,10 +48,12 @@ FEATURES: Final = {
     "coulomb friction": Feature("contact.friction", lambda scene: _flanks_rub(scene, "coulomb")),
     "shear friction": Feature("contact.shear_strength", lambda scene: _flanks_rub(scene, "shear")),
     "hub friction": Feature(
-        "gears.hub_friction", lambda scene: any(one.holding and one.name != "pin" for one in joints(scene))
+        "gears.hub_friction",
+        lambda scene: any(joint.holding and joint.name != "pin" for joint in joints(scene)),
     ),
     "pin friction": Feature(
-        "drive.pin_radius", lambda scene: any(one.holding and one.name == "pin" for one in joints(scene))
+        "drive.pin_radius",
+        lambda scene: any(joint.holding and joint.name == "pin" for joint in joints(scene)),
     ),
     "dry resistance": Feature("load.torque", lambda scene: scene.load is not None and scene.load.is_dry),
     "maugis asperities": Feature("contact.asperity", lambda scene: scene.contact.asperity == "maugis"),

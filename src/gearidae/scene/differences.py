@@ -10,13 +10,13 @@ MAY_CHANGE: Final = ("name", "drive", "load", "coating", "initial", "run")
 
 
 def first_difference(
-    one: Mapping[str, Any], other: Mapping[str, Any], ignored: Iterable[str] = ()
+    first: Mapping[str, Any], second: Mapping[str, Any], ignored: Iterable[str] = ()
 ) -> tuple[str, Any, Any] | None:
     """Name the first key in which two scenes differ.
 
     Parameters
     ----------
-    one, other : mapping
+    first, second : mapping
         As `Scene.to_dict` gives them, or an archive holds them.
     ignored : iterable of str, optional
         Dotted keys, or names of tables, in which they may differ.
@@ -29,9 +29,9 @@ def first_difference(
         What both hold there; None where one lacks it. The whole is None if there is no difference.
     """
     allowed = [_plain(key) for key in ignored]
-    for key, mine, theirs in _differences(one, other, ""):
+    for key, mine, theirs in _differences(first, second, ""):
         plain = _plain(key)
-        if not any(plain == each or plain.startswith(f"{each}.") for each in allowed):
+        if not any(plain == prefix or plain.startswith(f"{prefix}.") for prefix in allowed):
             return key, mine, theirs
     return None
 
@@ -41,12 +41,12 @@ def _plain(key: str) -> str:
     return ".".join(part for part in key.split(".") if not part.isdecimal())
 
 
-def _differences(one: Any, other: Any, key: str) -> Iterator[tuple[str, Any, Any]]:
-    if isinstance(one, dict) and isinstance(other, dict):
-        for name in sorted({*one, *other}):
-            yield from _differences(one.get(name), other.get(name), f"{key}.{name}".lstrip("."))
-    elif isinstance(one, list) and isinstance(other, list) and len(one) == len(other):
-        for number, (mine, theirs) in enumerate(zip(one, other, strict=True)):
+def _differences(first: Any, second: Any, key: str) -> Iterator[tuple[str, Any, Any]]:
+    if isinstance(first, dict) and isinstance(second, dict):
+        for name in sorted({*first, *second}):
+            yield from _differences(first.get(name), second.get(name), f"{key}.{name}".lstrip("."))
+    elif isinstance(first, list) and isinstance(second, list) and len(first) == len(second):
+        for number, (mine, theirs) in enumerate(zip(first, second, strict=True)):
             yield from _differences(mine, theirs, f"{key}.{number}")
-    elif one != other:
-        yield key, one, other
+    elif first != second:
+        yield key, first, second

@@ -74,7 +74,7 @@ def dump_keys(table: str, values: Mapping[str, float | str]) -> str:
 
 
 def _quantity(field: FieldInfo) -> Quantity | None:
-    return next((one for one in field.metadata if isinstance(one, Quantity)), None)
+    return next((entry for entry in field.metadata if isinstance(entry, Quantity)), None)
 
 
 def _table(group: Group, absent_in: str = "") -> Iterator[str]:
@@ -155,9 +155,9 @@ def _rows(rows: tuple[tuple[float, ...], ...]) -> str:
 
 def _inline(group: Group) -> str:
     """Write a small table in one line, without empty lists."""
-    given = [*((name, getattr(group, name)) for name in type(group).model_fields)]
-    given += (group.model_extra or {}).items()
-    return f"{{ {', '.join(f'{name} = {_plain(value)}' for name, value in given if value != ())} }}"
+    fields = [*((name, getattr(group, name)) for name in type(group).model_fields)]
+    fields += (group.model_extra or {}).items()
+    return f"{{ {', '.join(f'{name} = {_plain(value)}' for name, value in fields if value != ())} }}"
 
 
 def _plain(value: Any) -> str:

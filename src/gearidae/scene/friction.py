@@ -38,7 +38,7 @@ def friction_values(scene: Scene) -> dict[str, float]:
 def has_flank_friction(scene: Scene) -> bool:
     """Whether any material of a scene's flanks has friction."""
     values = friction_values(scene)
-    return any(values[one.name] > 0.0 for one in scene.materials() if one.share > 0.0)
+    return any(values[material.name] > 0.0 for material in scene.materials() if material.share > 0.0)
 
 
 def check_friction(scene: Scene) -> None:
@@ -69,13 +69,13 @@ def check_no_friction(scene: Scene) -> None:
         Naming the key.
     """
     contact, coating = scene.contact, scene.coating
-    given = {
+    values = {
         "contact.friction": contact.friction,
         "contact.shear_strength": contact.shear_strength,
         "coating.friction": coating.friction,
         "coating.shear_strength": coating.shear_strength,
     }
-    for key, value in given.items():
+    for key, value in values.items():
         if value:
             raise SceneError(key, value, "must be 0 in a scene with a roller, which does not slide")
     if contact.friction_law != "coulomb":

@@ -91,21 +91,21 @@ class Gears(Group):
         """Put the base radius in the place of the module, and the inertias of discs in that of the density."""
         if not isinstance(data, dict):
             return data
-        found = dict(data)
-        if cls._is_given(found, "module", "pinion_base_radius"):
+        table = dict(data)
+        if cls._is_given(table, "module", "pinion_base_radius"):
             module, teeth, angle = (
-                cls._number(found, name) for name in ("module", "pinion_teeth", "pressure_angle")
+                cls._number(table, name) for name in ("module", "pinion_teeth", "pressure_angle")
             )
-            del found["module"]
-            found["pinion_base_radius"] = 0.5 * module * teeth * math.cos(angle)
-        if cls._is_given(found, "density", "pinion_inertia", "gear_inertia"):
-            density, width = cls._number(found, "density"), cls._number(found, "face_width")
-            radius, angle = cls._number(found, "pinion_base_radius"), cls._number(found, "pressure_angle")
-            larger = radius * cls._number(found, "gear_teeth") / cls._number(found, "pinion_teeth")
-            del found["density"]
+            del table["module"]
+            table["pinion_base_radius"] = 0.5 * module * teeth * math.cos(angle)
+        if cls._is_given(table, "density", "pinion_inertia", "gear_inertia"):
+            density, width = cls._number(table, "density"), cls._number(table, "face_width")
+            radius, angle = cls._number(table, "pinion_base_radius"), cls._number(table, "pressure_angle")
+            larger = radius * cls._number(table, "gear_teeth") / cls._number(table, "pinion_teeth")
+            del table["density"]
             for name, base in (("pinion_inertia", radius), ("gear_inertia", larger)):
-                found[name] = disc_inertia(density, width, base, angle)
-        return found
+                table[name] = disc_inertia(density, width, base, angle)
+        return table
 
     @staticmethod
     def _is_given(data: dict[str, Any], name: str, *others: str) -> bool:
@@ -125,7 +125,7 @@ class Gears(Group):
         field = cls.model_fields[name]
         if name not in data:
             raise SceneError(name, "(missing)", f"is required: {field.description}")
-        kind = next(one for one in field.metadata if isinstance(one, (Quantity, Count)))
+        kind = next(entry for entry in field.metadata if isinstance(entry, (Quantity, Count)))
         try:
             return kind.read(data[name])
         except ValueError as error:

@@ -107,11 +107,11 @@ def _scene_error(error: ValidationError) -> SceneError:
 
 def _complaints(error: ValidationError) -> Iterator[tuple[str, object, str]]:
     """Yield key, value and what is allowed for every complaint, those of nested tables too."""
-    for one in error.errors(include_url=False):
-        where = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in one["loc"]).lstrip(
-            "."
-        )
-        reason = one.get("ctx", {}).get("error")
+    for complaint in error.errors(include_url=False):
+        where = "".join(
+            f"[{part}]" if isinstance(part, int) else f".{part}" for part in complaint["loc"]
+        ).lstrip(".")
+        reason = complaint.get("ctx", {}).get("error")
         if isinstance(reason, SceneError | ValidationError):
             inner = reason if isinstance(reason, ValidationError) else reason.__cause__
             nested: Iterable[tuple[str, object, str]] = ()
@@ -122,14 +122,14 @@ def _complaints(error: ValidationError) -> Iterator[tuple[str, object, str]]:
             for key, value, allowed in nested:
                 inside = key if key.startswith("[") or not key else f".{key}"
                 yield f"{where}{inside}".lstrip("."), value, allowed
-        elif one["type"] == "missing":
+        elif complaint["type"] == "missing":
             yield where, _MISSING, f"is required: {_description(error.title, where)}"
-        elif one["type"] in ("model_type", "dict_type"):
-            yield where, shorten(one["input"]), "must be a table"
-        elif one["type"] == "literal_error":
-            yield where, shorten(one["input"]), f"must be {one['ctx']['expected']}"
+        elif complaint["type"] in ("model_type", "dict_type"):
+            yield where, shorten(complaint["input"]), "must be a table"
+        elif complaint["type"] == "literal_error":
+            yield where, shorten(complaint["input"]), f"must be {complaint['ctx']['expected']}"
         else:
-            yield where, shorten(one["input"]), str(reason or one["msg"])
+            yield where, shorten(complaint["input"]), str(reason or complaint["msg"])
 
 
 def _description(title: str, name: str) -> str:

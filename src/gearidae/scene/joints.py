@@ -141,12 +141,12 @@ def _check_pin(scene: GearScene) -> None:
         raise SceneError(
             "load.law.name", load.law.name, "has a force, which only a drive has: choose another law"
         )
-    given = {
+    values = {
         "orientation": drive.orientation,
         "pin_radius": drive.pin_radius,
         "pin_friction": drive.pin_friction,
     }
-    for key, value in given.items():
+    for key, value in values.items():
         if value and not pushes(drive):
             raise SceneError(
                 f"drive.{key}",

@@ -91,10 +91,10 @@ def _open_key(model: type[Group], key: str) -> KeyInfo | None:
         table = (
             _table(table.model_fields[part].annotation)[0] if table and part in table.model_fields else None
         )
-    found = table.open_key(last) if table else None
-    if found is None:
+    entry = table.open_key(last) if table else None
+    if entry is None:
         return None
-    unit, description = found
+    unit, description = entry
     allowed = f"a number in {unit or 'SI'} or a text with a unit"
     return KeyInfo(key, unit, required=False, default=None, allowed=allowed, description=description)
 
@@ -191,10 +191,10 @@ def _table(annotation: Any) -> tuple[type[Group] | None, bool]:
 
 
 def _describe(key: str, field: FieldInfo) -> KeyInfo:
-    number = next((one for one in field.metadata if isinstance(one, (Quantity, Count))), None)
-    named = next((one for one in field.metadata if isinstance(one, Named)), None)
+    number = next((entry for entry in field.metadata if isinstance(entry, (Quantity, Count))), None)
+    named = next((entry for entry in field.metadata if isinstance(entry, Named)), None)
     args = get_args(field.annotation)
-    choices = [one for arg in args for one in (get_args(arg) or (arg,)) if isinstance(one, str)]
+    choices = [entry for arg in args for entry in (get_args(arg) or (arg,)) if isinstance(entry, str)]
     if number is not None:
         allowed = number.allowed().removeprefix("must be ")
     elif named is not None:

@@ -86,21 +86,21 @@ def _reader(quantity: Quantity) -> WrapValidator:
     """Read whatever may stand for a schedule; the field's own types read pairs that hold more than plain numbers."""
 
     def read(value: object, handler: Any) -> Knots:
-        given, interpolation = read_schedule(value, quantity.unit)
-        knots = _plain_knots(given, quantity)
-        return Knots(handler(given) if knots is None else knots, interpolation)
+        pairs, interpolation = read_schedule(value, quantity.unit)
+        knots = _plain_knots(pairs, quantity)
+        return Knots(handler(pairs) if knots is None else knots, interpolation)
 
     return WrapValidator(read)
 
 
-def _plain_knots(given: object, quantity: Quantity) -> Iterable[tuple[float, float]] | None:
+def _plain_knots(pairs: object, quantity: Quantity) -> Iterable[tuple[float, float]] | None:
     """Check pairs of plain numbers all at once; None if one of them is not as it must be."""
-    if not isinstance(given, (list, tuple)) or not 0 < len(given) <= MOST_KNOTS:
+    if not isinstance(pairs, (list, tuple)) or not 0 < len(pairs) <= MOST_KNOTS:
         return None
     try:
-        if not set(map(type, chain.from_iterable(given))) <= {float, int} or set(map(len, given)) != {2}:
+        if not set(map(type, chain.from_iterable(pairs))) <= {float, int} or set(map(len, pairs)) != {2}:
             return None
-        times, values = np.array(given, np.float64).T
+        times, values = np.array(pairs, np.float64).T
     except (TypeError, OverflowError):
         return None
     if not (_TIME.admits_all(times) and quantity.admits_all(values)):

@@ -48,13 +48,13 @@ def texts(pairs: Sequence[str], option: str, example: str) -> dict[str, str]:
     SceneError
         If a pair has no ``=`` or a key stands twice.
     """
-    found: dict[str, str] = {}
+    by_key: dict[str, str] = {}
     for pair in pairs:
         key, text = _split(pair, option, example)
-        if key in found:
+        if key in by_key:
             raise SceneError(option, key, "is given twice")
-        found[key] = text
-    return found
+        by_key[key] = text
+    return by_key
 
 
 def sweep_values(pairs: Sequence[str]) -> dict[str, list[Any]]:
@@ -76,8 +76,8 @@ def sweep_values(pairs: Sequence[str]) -> dict[str, list[Any]]:
     SceneError
         If a pair cannot be read or a key stands twice.
     """
-    given = texts(pairs, "--over", "coating.sam_fraction=1:0.4:-0.05")
-    return {key: _listed(key, text) for key, text in given.items()}
+    by_key = texts(pairs, "--over", "coating.sam_fraction=1:0.4:-0.05")
+    return {key: _listed(key, text) for key, text in by_key.items()}
 
 
 def quantity(option: str, text: str, unit: str) -> float:
@@ -120,8 +120,8 @@ def _listed(key: str, text: str) -> list[Any]:
     if ":" in text:
         return _range(key, text)
     if text.startswith("["):
-        found = literal(text)
-        return found if isinstance(found, list) else [found]
+        value = literal(text)
+        return value if isinstance(value, list) else [value]
     return [literal(part.strip()) for part in text.split(",")]
 
 

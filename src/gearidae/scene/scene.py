@@ -166,7 +166,7 @@ class Scene(Group):
     @property
     def attracts(self) -> bool:
         """Whether flanks attract each other across the gap: a material that they have has a Hamaker constant."""
-        return any(one.share > 0.0 and one.surface.hamaker > 0.0 for one in self.materials())
+        return any(material.share > 0.0 and material.surface.hamaker > 0.0 for material in self.materials())
 
     def materials(self) -> tuple[Material, ...]:
         """List the materials that share the interface of two flanks, see `gearidae.scene.coating`.
@@ -308,7 +308,7 @@ class GearScene(Scene):
         if mesh.backlash >= geometry.base_pitch / 2:
             allowed = f"must be below half a base pitch, {geometry.base_pitch / 2:.4g} m"
             raise SceneError("mesh.backlash", mesh.backlash, allowed)
-        slope = sum(abs(one.order * one.amplitude) for one in mesh.static_error)
+        slope = sum(abs(harmonic.order * harmonic.amplitude) for harmonic in mesh.static_error)
         if slope >= gears.pinion_base_radius:
             raise SceneError(
                 "mesh.static_error",

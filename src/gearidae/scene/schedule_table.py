@@ -139,9 +139,9 @@ def _of_file(table: Mapping[str, Any], units: tuple[str, str]) -> list[Floats]:
         return all(column_of(headings, name) is not None for name in asked)
 
     try:
-        found = open_table(path, largest=_LARGEST, names=names, unit_row=True)
-        wanted = _wanted(table, found.headings)
-        columns = found.numbers([place for _, place in wanted], most=MOST_KNOTS).T
+        opened = open_table(path, largest=_LARGEST, names=names, unit_row=True)
+        wanted = _wanted(table, opened.headings)
+        columns = opened.numbers([place for _, place in wanted], most=MOST_KNOTS).T
         return [
             _numbers(name, cells, unit) for (name, _), cells, unit in zip(wanted, columns, units, strict=True)
         ]
@@ -153,7 +153,7 @@ def _wanted(table: Mapping[str, Any], names: Sequence[str]) -> list[tuple[str, i
     """Find the columns of time and value: their names, with units, and their places."""
     if "time" not in table and "value" not in table and len(names) == 2:
         return [(names[0], 0), (names[1], 1)]
-    found = []
+    columns = []
     for key in ("time", "value"):
         if not isinstance(table.get(key), str):
             raise ValueError(f"{key} must be the name of a column, one of {listed(names)}")
@@ -162,8 +162,8 @@ def _wanted(table: Mapping[str, Any], names: Sequence[str]) -> list[tuple[str, i
         if place is None:
             problem = "stands more than once among" if list(names).count(name) > 1 else "is not among"
             raise ValueError(f"column {name[:60]!r} {problem} the columns, {listed(names)}")
-        found.append((name if split_unit(name)[1] else names[place], place))
-    return found
+        columns.append((name if split_unit(name)[1] else names[place], place))
+    return columns
 
 
 def _numbers(name: str, column: Any, unit: str) -> Floats:

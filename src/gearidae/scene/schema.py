@@ -56,12 +56,12 @@ def json_schema(model: type[Scene]) -> dict[str, Any]:
 def _walk(schema: Any) -> None:
     """Fit pydantic's schema to a case file, which has no null, and may give one entry for a list of one."""
     if isinstance(schema, list):
-        for each in schema:
-            _walk(each)
+        for part in schema:
+            _walk(part)
     if not isinstance(schema, dict):
         return
-    for each in schema.values():
-        _walk(each)
+    for part in schema.values():
+        _walk(part)
     choices = schema.get("anyOf", [])
     if {"type": "null"} in choices:
         kept = [choice for choice in choices if choice != {"type": "null"}]

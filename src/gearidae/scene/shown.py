@@ -38,13 +38,13 @@ def _line(scene: Scene) -> str:
     parts = [what, f"SAM {_covered(scene)} %", with_prefix(scene.run.duration, "s")]
     name = nearest_preset(scene)
     if name:
-        found = differences(scene, name)
+        changed = differences(scene, name)
         listed = [
             f"no {key}" if new is None else f"{key} = {value_text(key, new)}"
-            for key, (_, new) in list(found.items())[:_NAMED]
+            for key, (_, new) in list(changed.items())[:_NAMED]
         ]
-        more = [f"{len(found) - _NAMED} more"] if len(found) > _NAMED else []
-        parts.append(f"as {name}" + (f" but {', '.join([*listed, *more])}" if found else ""))
+        more = [f"{len(changed) - _NAMED} more"] if len(changed) > _NAMED else []
+        parts.append(f"as {name}" + (f" but {', '.join([*listed, *more])}" if changed else ""))
     return f"<Scene {scene.name!r}: {', '.join(parts)}>"
 
 
@@ -65,12 +65,12 @@ def _table(scene: Scene) -> str:
         Without colours of its own, so that it can be read on any background.
     """
     name = nearest_preset(scene)
-    found = differences(scene, name) if name else {}
+    changed = differences(scene, name) if name else {}
     caption = f"<b>{html.escape(scene.name)}</b>"
     if name:
         many = (
-            f"{len(found)} {'key differs' if len(found) == 1 else 'keys differ'}"
-            if found
+            f"{len(changed)} {'key differs' if len(changed) == 1 else 'keys differ'}"
+            if changed
             else "nothing differs"
         )
         caption += f" compared with the preset {name}: {many}"
@@ -82,17 +82,17 @@ def _table(scene: Scene) -> str:
             table = room
             rows.append(f'<tr><th colspan="3" style="text-align: left">{html.escape(room)}</th></tr>')
         if last:
-            rows.append(_row(key, last, value, found.get(key)))
-    gone = [(key, old) for key, (old, new) in found.items() if new is None]
+            rows.append(_row(key, last, value, changed.get(key)))
+    gone = [(key, old) for key, (old, new) in changed.items() if new is None]
     rows += [_row(key, key, None, (old, None)) for key, old in gone]
     return f"<table><caption style='text-align: left'>{caption}</caption>{''.join(rows)}</table>"
 
 
-def _row(key: str, name: str, value: object, found: tuple[object, object] | None) -> str:
+def _row(key: str, name: str, value: object, change: tuple[object, object] | None) -> str:
     shown = "-" if value is None else value_text(key, value)
     remark = ""
-    if found is not None:
-        old = "not there" if found[0] is None else value_text(key, found[0])
+    if change is not None:
+        old = "not there" if change[0] is None else value_text(key, change[0])
         shown, remark = f"<b>{html.escape(shown)}</b>", html.escape(f"preset: {old}")
     else:
         shown = html.escape(shown)

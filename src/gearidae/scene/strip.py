@@ -30,7 +30,7 @@ def flank_strip(scene: Scene) -> tuple[float, float]:
         Arc from the base circle of the pinion, or distance from the middle of a roller [m].
     """
     stretch = max(
-        law_of(scene.contact.asperity, one.surface).detach for one in scene.materials()
+        law_of(scene.contact.asperity, material.surface).detach for material in scene.materials()
     )  # roughnesses; of all materials, whether the scene has them or not
     reach = (HIGHEST + stretch) * scene.surface.roughness
     if scene.roller is not None:

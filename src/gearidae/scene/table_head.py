@@ -87,7 +87,7 @@ def open_table(
     if places is not None:
         rows = _from_first_row(plain, places, delimiter, decimal)
     elif names is not None:
-        heading = _heading(lines, names, delimiter, given=skip is not None)
+        heading = _heading(lines, names, delimiter, is_first=skip is not None)
         rows = [line for line in plain if line.number > heading.number]
     texts = [line.text for line in rows[:_ROWS_SEEN]] or [plain[0].text]
     between = _delimiter(texts) if delimiter is None else delimiter
@@ -145,25 +145,25 @@ def _first_lines(file: Any, skip: int) -> list[_Line]:
 
 
 def _heading(
-    lines: list[_Line], names: Callable[[Sequence[str]], bool], delimiter: str | None, *, given: bool
+    lines: list[_Line], names: Callable[[Sequence[str]], bool], delimiter: str | None, *, is_first: bool
 ) -> _Line:
     """Find the line of headings."""
     first = next(line for line in lines if not line.remark)
-    if given:
+    if is_first:
         return first
-    found = None
-    for line in [each for each in lines if each.number < first.number or not each.remark]:
+    heading = None
+    for line in [line for line in lines if line.number < first.number or not line.remark]:
         try:
             named = names(_headings(line.text, _delimiter([line.text]) if delimiter is None else delimiter))
         except ValueError:
             named = False  # a quotation mark in a line above the table
         if named:
-            found = line
+            heading = line
             if not line.remark:
                 break
-        elif not line.remark and found is not None:
+        elif not line.remark and heading is not None:
             break  # the first row below headings in a remark
-    return found or first
+    return heading or first
 
 
 def _headings(text: str, delimiter: str) -> tuple[str, ...]:
@@ -174,8 +174,8 @@ def _headings(text: str, delimiter: str) -> tuple[str, ...]:
     if delimiter:
         cells = _split(text, delimiter)
         return tuple(cells[:-1] if not cells[-1] else cells)
-    found = _WITH_UNIT.findall(text)
-    return tuple(name.strip() for name in found) if len(found) > 1 else tuple(text.split())
+    names = _WITH_UNIT.findall(text)
+    return tuple(name.strip() for name in names) if len(names) > 1 else tuple(text.split())
 
 
 def _from_first_row(

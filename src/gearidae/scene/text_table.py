@@ -172,7 +172,7 @@ class TextTable:
         self, columns: Sequence[int] | None, *, holes: bool, most: int | None
     ) -> NDArray[np.float64]:
         """Read a table with holes, or find its first fault."""
-        found = array("d")
+        numbers = array("d")
         count, width, last_is_empty = 0, 0, True
         for line, count, cells in self.rows():
             if most is not None and count > most:
@@ -185,8 +185,8 @@ class TextTable:
                 if number is None or not (math.isfinite(number) or (holes and math.isnan(number))):
                     fault = f"row {count} {self._fault(cells[column], number)}"
                     raise ValueError(f"line {line}: column {self._named(column)}, {fault}")
-                found.append(number)
-        table = np.frombuffer(found, np.float64).reshape(count, width) if count else np.empty((0, width))
+                numbers.append(number)
+        table = np.frombuffer(numbers, np.float64).reshape(count, width) if count else np.empty((0, width))
         return table[:, :-1] if columns is None and width > 1 and last_is_empty else table
 
     def _named(self, column: int) -> str:
@@ -221,18 +221,18 @@ def check_regular(path: Path, largest: int) -> int:
         Saying why not.
     """
     try:
-        found = path.stat()
+        status = path.stat()
     except FileNotFoundError:
         raise ValueError(f"cannot be read: there is no file {path.name}") from None
     except OSError as error:
         raise ValueError(f"cannot be read ({error.strerror})") from None
-    if stat.S_ISDIR(found.st_mode):
+    if stat.S_ISDIR(status.st_mode):
         raise ValueError("is a folder, not a file")
-    if not stat.S_ISREG(found.st_mode):
+    if not stat.S_ISREG(status.st_mode):
         raise ValueError("is a pipe or a device, which may have no end: write it to a file first")
-    if found.st_size > largest:
+    if status.st_size > largest:
         raise ValueError(f"is larger than {largest / 1e6:.4g} MB: shorten it")
-    return found.st_size
+    return status.st_size
 
 
 def split_unit(heading: str) -> tuple[str, str]:

@@ -106,14 +106,14 @@ class Law(Group):
             except ValueError as error:
                 raise SceneError("name", shorten(name), str(error)) from None
         named = torque_law(name).named if name in torque_names() else ()
-        return [*cls.model_fields, *(one.name for one in named)]
+        return [*cls.model_fields, *(parameter.name for parameter in named)]
 
     @classmethod
     def open_key(cls, name: str) -> tuple[str, str] | None:
         """Return unit and description of a parameter that any law has by this name."""
-        every = (one for law in torque_names() for one in torque_law(law).named)
-        found = next((one for one in every if one.name == name), None)
-        return None if found is None else (found.unit, found.description or f"parameter {name} of the law")
+        every = (parameter for law in torque_names() for parameter in torque_law(law).named)
+        match = next((parameter for parameter in every if parameter.name == name), None)
+        return None if match is None else (match.unit, match.description or f"parameter {name} of the law")
 
     @model_validator(mode="before")
     @classmethod
@@ -122,19 +122,21 @@ class Law(Group):
         if not isinstance(data, dict) or data.get("name") not in torque_names():
             return data
         read = dict(data)
-        for one in torque_law(data["name"]).named:
-            value = data.get(one.name, one.default)
+        for parameter in torque_law(data["name"]).named:
+            value = data.get(parameter.name, parameter.default)
             if value is None:
-                meaning = f": {one.description}" if one.description else ""
-                raise SceneError(one.name, "(missing)", f"is required by the law {data['name']}{meaning}")
+                meaning = f": {parameter.description}" if parameter.description else ""
+                raise SceneError(
+                    parameter.name, "(missing)", f"is required by the law {data['name']}{meaning}"
+                )
             try:
-                read[one.name] = _read_parameter(one, value)
+                read[parameter.name] = _read_parameter(parameter, value)
             except ValidationError as error:  # of a schedule: what is wrong with its first bad knot
                 first = error.errors(include_url=False)[0]
                 reason = str(first.get("ctx", {}).get("error", first["msg"]))
-                raise SceneError(one.name, shorten(value), reason) from None
+                raise SceneError(parameter.name, shorten(value), reason) from None
             except ValueError as error:
-                raise SceneError(one.name, shorten(value), str(error)) from None
+                raise SceneError(parameter.name, shorten(value), str(error)) from None
         return read
 
     @model_validator(mode="after")
@@ -142,7 +144,7 @@ class Law(Group):
         """Let the law have as many parameters as it reads."""
         law = torque_law(self.name)
         if law.named and self.parameters:
-            names = ", ".join(one.name for one in law.named)
+            names = ", ".join(parameter.name for parameter in law.named)
             raise SceneError(
                 "parameters", shorten(list(self.parameters)), f"the law {self.name} has them by name: {names}"
             )
@@ -157,12 +159,12 @@ class Law(Group):
     def numbers(self) -> tuple[float, ...]:
         """Return the parameters as the law's function reads them; a schedule as its knots."""
         numbers = list(self.parameters)
-        for one in torque_law(self.name).named:
-            value = (self.model_extra or {})[one.name]
+        for parameter in torque_law(self.name).named:
+            value = (self.model_extra or {})[parameter.name]
             if isinstance(value, tuple):
                 numbers += [x for pair in value for x in pair]
             else:
-                numbers += [0.0, value] if one.over_time else [value]
+                numbers += [0.0, value] if parameter.over_time else [value]
         return tuple(numbers)
 
 

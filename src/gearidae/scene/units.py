@@ -152,19 +152,19 @@ def _scale(own_unit: str, unit: str, difference: bool) -> tuple[Decimal, Decimal
     source = f"1 {own_unit}" if own_unit.startswith(("/", "*")) else own_unit
     registry = _registry()
     try:
-        given = registry.parse_units(source)
+        parsed = registry.parse_units(source)
         wanted = registry.parse_units("" if unit == "1" else unit)
-        if unit == "rad/s" and given == registry.parse_units("1/min"):
-            given = registry.parse_units("rpm")
-        one = registry.Quantity(Decimal(1), given)
-        powers = dict(one.unit_items())
+        if unit == "rad/s" and parsed == registry.parse_units("1/min"):
+            parsed = registry.parse_units("rpm")
+        single = registry.Quantity(Decimal(1), parsed)
+        powers = dict(single.unit_items())
         target = dict(registry.Quantity(Decimal(1), wanted).unit_items())
-        fits = one.is_compatible_with(wanted) and _same_turns(powers, target, unit)
+        fits = single.is_compatible_with(wanted) and _same_turns(powers, target, unit)
         # of temperatures the zero counts, too
-        zero = Decimal(registry.Quantity(Decimal(0), given).to(wanted).magnitude) if fits else Decimal(0)
-        factor = Decimal(one.to(wanted).magnitude) - zero if fits else Decimal(0)
+        zero = Decimal(registry.Quantity(Decimal(0), parsed).to(wanted).magnitude) if fits else Decimal(0)
+        factor = Decimal(single.to(wanted).magnitude) - zero if fits else Decimal(0)
         two = (
-            Decimal(registry.Quantity(Decimal(2), given).to(wanted).magnitude) - zero if fits else Decimal(0)
+            Decimal(registry.Quantity(Decimal(2), parsed).to(wanted).magnitude) - zero if fits else Decimal(0)
         )
         if not math.isclose(two, 2 * factor, rel_tol=1e-9):
             raise ValueError("is a logarithm")  # decibels and nepers
@@ -183,27 +183,27 @@ def _wanted(unit: str) -> str:
     return "a number" if unit == "1" else f"a number with a unit that fits {unit}"
 
 
-def _same_turns(own: dict[str, Any], wanted: dict[str, Any], unit: str) -> bool:
+def _same_turns(powers: dict[str, Any], wanted: dict[str, Any], unit: str) -> bool:
     """Keep apart what pint takes for the same: numbers and angles, cycles per second and angular speeds.
 
     Parameters
     ----------
-    own, wanted : dict of str to number
+    powers, wanted : dict of str to number
         Powers of the units by their names.
     unit : str
         As text, what `wanted` is of.
     """
-    angles = {name: power for name, power in own.items() if name.endswith(_ANGLES)}
+    angles = {name: power for name, power in powers.items() if name.endswith(_ANGLES)}
     if unit in ("1", "Hz"):
         return not angles
     radians = wanted.get("radian", 0)
-    if radians and any(_registry().Unit(name).dimensionless for name in own if name not in angles):
+    if radians and any(_registry().Unit(name).dimensionless for name in powers if name not in angles):
         return False  # counts, parts and bits are no angles
     if sum(angles.values()) == radians:
         return True
     # A radian may be left out. The second goes without one; minutes, hertz and becquerels count cycles.
     only_radians = all(name.endswith("radian") for name in angles)
-    return unit != "rad" and only_radians and not any(map(_counts_cycles, own))
+    return unit != "rad" and only_radians and not any(map(_counts_cycles, powers))
 
 
 def _counts_cycles(name: str) -> bool:

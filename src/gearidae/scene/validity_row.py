@@ -89,7 +89,7 @@ def rows_to_json(rows: Iterable[ValidityRow]) -> str:
     """Write rows as JSON, for the attribute of an archive; NaN and infinity become null."""
     kept = [
         {key: None if isinstance(value, float) and not math.isfinite(value) else value for key, value in row}
-        for row in (asdict(each).items() for each in rows)
+        for row in (asdict(entry).items() for entry in rows)
     ]
     return json.dumps(kept, allow_nan=False)
 

@@ -129,7 +129,7 @@ def life(
     coverage = coverage_of(base, resolved, places)
     length = Cycles(settle, count, tolerance)
     window = window_scene(base, length, places)
-    found = Life()
+    history = Life()
     windows = Windows(window, coverage, law, length, starts, how.backend)
     direct = DirectCycles(windows)
 
@@ -147,9 +147,9 @@ def life(
                 least=fraction,
                 bracket=bracket,
                 direct=direct,
-                life=found,
+                life=history,
             )
-            return _dataset(scene, direct, found, frequency=frequency)
+            return _dataset(scene, direct, history, frequency=frequency)
 
     settings = [law.describe(), passages, fraction, resolved, places, cycles, settle, starts]
     return STUDY.compute(
@@ -158,25 +158,25 @@ def life(
         work,
         [*settings, tolerance, bracket, frequency],
         origin=scene,
-        so_far=lambda: _so_far(scene, direct, found),
+        so_far=lambda: _so_far(scene, direct, history),
         prepared=lambda ds: ds,
     )
 
 
-def _dataset(scene: GearScene, direct: DirectCycles, found: Life, *, frequency: bool) -> xr.Dataset:
+def _dataset(scene: GearScene, direct: DirectCycles, history: Life, *, frequency: bool) -> xr.Dataset:
     """Make the dataset of a life, with the state at which it sticks as its last if there is one."""
     windows = direct.windows
-    seen = [_seen(direct, state) for state in found.states]
-    ds = life_dataset(scene, windows.coverage, found, seen, frequency=frequency)
+    seen = [_seen(direct, state) for state in history.states]
+    ds = life_dataset(scene, windows.coverage, history, seen, frequency=frequency)
     simulated = windows.mesh_cycles + direct.run
     teeth = scene.gears.pinion_teeth
-    whole = found.passages[-1] * teeth
-    ends = {} if math.isnan(found.sticks_by) else {"passages_to_sticking": found.sticks_by}
+    whole = history.passages[-1] * teeth
+    ends = {} if math.isnan(history.sticks_by) else {"passages_to_sticking": history.sticks_by}
     return ds.assign_attrs(
         {
             "law": json.dumps(windows.law.describe()),
             "law_source": windows.law.source,
-            "ending": found.ending,
+            "ending": history.ending,
             **ends,
             "states": len(windows.seen),
             "windows": windows.run,
@@ -191,23 +191,26 @@ def _dataset(scene: GearScene, direct: DirectCycles, found: Life, *, frequency: 
 
 def _seen(direct: DirectCycles, state: Floats) -> StateResult:
     """What the windows of a state have shown, or its cycle where the coverage was followed cycle by cycle."""
-    own = direct.seen.get(state.tobytes())
-    if own is not None and not direct.windows.turns(state):
-        return own
+    cycle = direct.seen.get(state.tobytes())
+    if cycle is not None and not direct.windows.turns(state):
+        return cycle
     return direct.windows.of(state)
 
 
-def _so_far(scene: GearScene, direct: DirectCycles, found: Life) -> xr.Dataset:
+def _so_far(scene: GearScene, direct: DirectCycles, history: Life) -> xr.Dataset:
     """Make the dataset of a life that was cut off: of its steps that have been run, without frequencies."""
     done = [
         number
-        for number, state in enumerate(found.states)
+        for number, state in enumerate(history.states)
         if direct.windows.has(state) or state.tobytes() in direct.seen
     ]
     if not done:
         return xr.Dataset()
     kept = Life(
-        [found.passages[n] for n in done], [found.states[n] for n in done], found.ending, found.sticks_by
+        [history.passages[n] for n in done],
+        [history.states[n] for n in done],
+        history.ending,
+        history.sticks_by,
     )
     return _dataset(scene, direct, kept, frequency=False)
 

@@ -120,7 +120,7 @@ def lives(
     distributions = read_distributions(base, vary, parameter_units(law))
     texts = names_of(distributions)
     drawn = plain_design(distributions, int(size), design, int(seed)).values
-    values = {each.key: drawn[:, number] for number, each in enumerate(distributions)}
+    values = {distribution.key: drawn[:, number] for number, distribution in enumerate(distributions)}
     laws = drawn_laws(law, values, int(size), texts)
     members = list(zip(_scenes(base, values, int(size), texts), laws, strict=True))
     for scene_of_member, law_of_member in members:
@@ -129,16 +129,16 @@ def lives(
 
     def work(kept: _KeptLives | None) -> xr.Dataset:
         common = _Common(settings, how.backend, None if kept is None else kept.folder)
-        found: list[_Member] = []
+        followed: list[_Member] = []
         with (
             nullcontext() if kept is None else kept,
             sweep_progress(how.progress, len(members)) as report,
             how.computing(len(members)) as computing,
         ):
-            for each in side_by_side(computing, _follow, members, [common] * len(members)):
-                found.append(each)
-                report(float(len(found)), len(members))
-        return _dataset(base, law, distributions, values, found)
+            for member in side_by_side(computing, _follow, members, [common] * len(members)):
+                followed.append(member)
+                report(float(len(followed)), len(members))
+        return _dataset(base, law, distributions, values, followed)
 
     depends = {"ensemble": json.dumps(about), "settings": json.dumps([law.describe(), settings])}
     return run_kept(how, _KeptLives, work, {**origin_of(base), **depends}, read=open_lives)
@@ -253,8 +253,8 @@ def _check_settings(law: LossLaw, settings: Mapping[str, Any]) -> None:
 
 def _scenes(base: Scene, values: Mapping[str, Floats], size: int, texts: Mapping[str, str]) -> list[Scene]:
     """Scenes of the members; all alike if nothing but parameters of the law are drawn."""
-    own = {key: column for key, column in values.items() if not key.startswith("law.")}
-    return list(member_plan(base, own, texts).scenes) if own else [base] * size
+    drawn = {key: column for key, column in values.items() if not key.startswith("law.")}
+    return list(member_plan(base, drawn, texts).scenes) if drawn else [base] * size
 
 
 def _dataset(
@@ -262,29 +262,33 @@ def _dataset(
     law: LossLaw,
     distributions: Sequence[Distribution],
     values: Mapping[str, Floats],
-    found: Sequence[_Member],
+    members: Sequence[_Member],
 ) -> xr.Dataset:
     """Put the members along one dimension."""
     columns = {
-        "passages_to_sticking": [each.sticks_by for each in found],
-        "passages_turning": [each.turning for each in found],
-        "final_coverage": [each.coverage for each in found],
-        "windows": [each.windows for each in found],
-        "sticks": [np.nan if each.status == "failed" else float(each.ending == "sticks") for each in found],
+        "passages_to_sticking": [member.sticks_by for member in members],
+        "passages_turning": [member.turning for member in members],
+        "final_coverage": [member.coverage for member in members],
+        "windows": [member.windows for member in members],
+        "sticks": [
+            np.nan if member.status == "failed" else float(member.ending == "sticks") for member in members
+        ],
     }
     values_of: dict[str, Any] = {name: np.array(column) for name, column in columns.items()}
-    values_of |= {name: [getattr(each, name) for each in found] for name in ("ending", "status", "message")}
+    values_of |= {
+        name: [getattr(member, name) for member in members] for name in ("ending", "status", "message")
+    }
     names = dimension_names(values)
     coords: dict[str, Any] = {
-        names[each.key]: ("member", values[each.key], {"units": each.unit, "long_name": each.key})
-        for each in distributions
+        names[drawn.key]: ("member", values[drawn.key], {"units": drawn.unit, "long_name": drawn.key})
+        for drawn in distributions
     }
     attributes = {
-        **provenance(base, f"followed {len(found)} lives", swept=tuple(values)),
-        "title": f"{base.name}: lives of {len(found)} coatings",
+        **provenance(base, f"followed {len(members)} lives", swept=tuple(values)),
+        "title": f"{base.name}: lives of {len(members)} coatings",
         "summary": "Passages until gears stick whose keys were drawn from distributions, by cycle jump.",
         "swept": json.dumps({key: column.tolist() for key, column in values.items()}, allow_nan=False),
         "law": json.dumps(law.describe()),
         "law_source": law.source,
     }
-    return STUDY.dataset({"member": np.arange(len(found)), **values_of}, attributes).assign_coords(coords)
+    return STUDY.dataset({"member": np.arange(len(members)), **values_of}, attributes).assign_coords(coords)

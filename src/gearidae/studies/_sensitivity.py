@@ -146,16 +146,16 @@ def sensitivity(
     for rtol in _tolerances(scene.run.rtol):
         of_scene = _Runs(scene.replace({"run.rtol": rtol}), key, figure, backend, executor)
         with interruptible():
-            found = _differentiate(of_scene, middle, size, rtol)
-        runs += found.runs
+            derivative = _differentiate(of_scene, middle, size, rtol)
+        runs += derivative.runs
         if before is not None:
-            more = _REMAINING * abs(found.value - before.value)
-            found = replace(found, uncertainty=found.uncertainty + more)
-            if best is None or found.uncertainty < best.uncertainty:
-                best = found
+            more = _REMAINING * abs(derivative.value - before.value)
+            derivative = replace(derivative, uncertainty=derivative.uncertainty + more)
+            if best is None or derivative.uncertainty < best.uncertainty:
+                best = derivative
             if best.uncertainty <= accuracy * abs(best.value):
                 break
-        before = found
+        before = derivative
     assert best is not None
     return replace(best, runs=runs)
 
@@ -230,7 +230,7 @@ def _figure(of: str | Figure) -> Figure:
 
     def read(ds: xr.Dataset) -> float:
         if of not in ds.variables or ds[of].dims:
-            once = sorted(str(name) for name, each in ds.data_vars.items() if not each.dims)
+            once = sorted(str(name) for name, variable in ds.data_vars.items() if not variable.dims)
             raise SceneError("of", str(of)[:40], f"must be one of {', '.join(once)}, or a function")
         return float(ds[of])
 

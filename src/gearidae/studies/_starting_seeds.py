@@ -97,7 +97,7 @@ class _Design:
         """Take in the starting torques at the next rate, and what is said of runs that have failed."""
         if self.torques.size:
             self.halvings += 1
-            before, now = (_quantiles(each)[1] - pitch_of(self.scene).dry for each in (self.torques, torques))
+            before, now = (_quantiles(row)[1] - pitch_of(self.scene).dry for row in (self.torques, torques))
             # medians that no gear reaches are the same
             self.change = (
                 0.0 if before == now else abs(now / before - 1.0) if math.isfinite(before) else math.inf
@@ -114,15 +114,15 @@ class _Runs:
 
     def torques(self, scenes: Sequence[GearScene]) -> Floats:
         """Torques of runs from rest [N m]; infinite where the gear has not turned, NaN where its run has failed."""
-        found = []
+        values = []
         self.messages = []
         for _, word in self.compute(run_from_rest, scenes):
             failure = failure_of(word)
             self.messages.append(failure)
             if failure:
                 log.warning("one gear is left out: %s", failure)
-            found.append(math.nan if failure else math.inf if word == RESTS else float(word))
-        return np.array(found)
+            values.append(math.nan if failure else math.inf if word == RESTS else float(word))
+        return np.array(values)
 
 
 def starting_torques(
@@ -153,7 +153,7 @@ def starting_torques(
     numbers = range(base.contact.seed, base.contact.seed + count)
 
     def work(kept: KeptRuns | None) -> xr.Dataset:
-        designs = [_Design(each, [laid(each, seed) for seed in numbers]) for each in scenes]
+        designs = [_Design(scene, [laid(scene, seed) for seed in numbers]) for scene in scenes]
         usual = _STAGES * count * len(designs)
         with how.side_by_side(kept, usual) as compute:
             _find_all(designs, _Runs(compute))
@@ -164,29 +164,33 @@ def starting_torques(
 
 def _find_all(designs: Sequence[_Design], runs: _Runs) -> None:
     """Find the scale of each design, the torques at rates that are halved until they agree, and who starts at once."""
-    pilots = runs.torques([pilot(at) for one in designs for at in one.laid])
-    for one, torques in _in_parts(designs, pilots):
-        dry = pitch_of(one.scene).dry
+    pilots = runs.torques([pilot(at) for design in designs for at in design.laid])
+    for design, torques in _in_parts(designs, pilots):
+        dry = pitch_of(design.scene).dry
         started = torques[np.isfinite(torques)] - dry
         if np.isnan(torques).all():
             raise nothing_followed("gear", next(filter(None, reversed(runs.messages))))
         if not started.size:
-            raise SceneError("scene", one.scene.name, "has no gear that any torque starts")
-        one.scale = float(np.median(started))
+            raise SceneError("scene", design.scene.name, "has no gear that any torque starts")
+        design.scale = float(np.median(started))
     waiting = list(designs)
     while waiting:
-        halvings = [one.halvings + (one.torques.size > 0) for one in waiting]
-        slow = [ramp(at, one.scale, n) for one, n in zip(waiting, halvings, strict=True) for at in one.laid]
-        for number, (one, torques) in enumerate(_in_parts(waiting, runs.torques(slow))):
-            own = slice(number * len(one.laid), (number + 1) * len(one.laid))
-            one.learn(torques, runs.messages[own])
-        waiting = [one for one in waiting if not one.is_settled]
-    for one in designs:
-        torque, dry = one.scene.drive.torque, pitch_of(one.scene).dry
-        one.starts = np.full(len(one.laid), 0.0 if torque > 0.0 else math.nan)
+        halvings = [design.halvings + (design.torques.size > 0) for design in waiting]
+        slow = [
+            ramp(at, design.scale, n)
+            for design, n in zip(waiting, halvings, strict=True)
+            for at in design.laid
+        ]
+        for number, (design, torques) in enumerate(_in_parts(waiting, runs.torques(slow))):
+            part = slice(number * len(design.laid), (number + 1) * len(design.laid))
+            design.learn(torques, runs.messages[part])
+        waiting = [design for design in waiting if not design.is_settled]
+    for design in designs:
+        torque, dry = design.scene.drive.torque, pitch_of(design.scene).dry
+        design.starts = np.full(len(design.laid), 0.0 if torque > 0.0 else math.nan)
         if torque > dry:
-            found = runs.torques([constant(at, one.scale, torque) for at in one.laid])
-            one.starts = np.where(np.isnan(found), np.nan, np.isfinite(found))
+            turned = runs.torques([constant(at, design.scale, torque) for at in design.laid])
+            design.starts = np.where(np.isnan(turned), np.nan, np.isfinite(turned))
 
 
 def _in_parts(designs: Sequence[_Design], values: Floats) -> list[tuple[_Design, Floats]]:
@@ -226,24 +230,25 @@ def _dataset(
 
 def _columns(designs: Sequence[_Design]) -> dict[str, Any]:
     """Values of the variables, design by design."""
-    torques = np.stack([one.torques for one in designs])
-    starts = np.stack([one.starts for one in designs])
+    torques = np.stack([design.torques for design in designs])
+    starts = np.stack([design.starts for design in designs])
     finite = np.where(np.isfinite(torques), torques, np.nan)
-    quantiles = np.stack([_quantiles(each) for each in torques])
-    pitches = [pitch_of(one.scene) for one in designs]
+    quantiles = np.stack([_quantiles(values) for values in torques])
+    pitches = [pitch_of(design.scene) for design in designs]
     return {
         "starting_torque": finite,
         "starts": starts,
         "quantiles": np.where(np.isfinite(quantiles), quantiles, np.nan),
-        "parts": [parts_of(one.scene, row) for one, row in zip(designs, finite, strict=True)],
+        "parts": [parts_of(design.scene, row) for design, row in zip(designs, finite, strict=True)],
         "failed": np.isnan(torques),
-        "message": [one.messages for one in designs],
+        "message": [design.messages for design in designs],
         "not_started": np.isinf(torques).sum(axis=1) / (~np.isnan(torques)).sum(axis=1),
-        "chance": [_mean(each[~np.isnan(each)]) for each in starts],
+        "chance": [_mean(values[~np.isnan(values)]) for values in starts],
         "rate": [
-            ramp_rate(pitch, one.scale, one.halvings) for pitch, one in zip(pitches, designs, strict=True)
+            ramp_rate(pitch, design.scale, design.halvings)
+            for pitch, design in zip(pitches, designs, strict=True)
         ],
-        "ramp_end": [ramp_end(pitch, one.scale) for pitch, one in zip(pitches, designs, strict=True)],
-        "median_change": [one.change for one in designs],
-        "damping": [least_damping(one.scene) for one in designs],
+        "ramp_end": [ramp_end(pitch, design.scale) for pitch, design in zip(pitches, designs, strict=True)],
+        "median_change": [design.change for design in designs],
+        "damping": [least_damping(design.scene) for design in designs],
     }

@@ -177,9 +177,9 @@ def starting_torque(
     least = _lowest(scene, lowest)
 
     def work(kept: KeptRuns | None) -> xr.Dataset:
-        static = [static_starting_torque(each, impacts=impacts, lowest=least) for each in scenes]
+        static = [static_starting_torque(variant, impacts=impacts, lowest=least) for variant in scenes]
         searches = [
-            _Search(each, impacts, least, torque) for each, torque in zip(scenes, static, strict=True)
+            _Search(variant, impacts, least, torque) for variant, torque in zip(scenes, static, strict=True)
         ]
         if simulated:
             _search_all(searches, tolerance, how, kept)
@@ -190,38 +190,38 @@ def starting_torque(
     return STUDY.compute(how, base, work, [fractions, impacts, least, simulated, tolerance], origin=scene)
 
 
-def _refuse_settings(**given: Any) -> None:
+def _refuse_settings(**settings: Any) -> None:
     """Refuse settings that the starting torques of a population do not have."""
     usual = {"impacts": 3, "lowest": None, "simulated": True, "tolerance": 0.1}
-    for name, value in given.items():
+    for name, value in settings.items():
         if value != usual[name]:
             raise SceneError(
                 name, value, "is not for a population, whose gears each turn by one pitch: leave it out"
             )
 
 
-def _coatings(base: GearScene, given: ArrayLike | None) -> tuple[list[float], list[GearScene]]:
+def _coatings(base: GearScene, sam_fraction: ArrayLike | None) -> tuple[list[float], list[GearScene]]:
     """Fractions of the coating, and the scenes with them."""
-    if isinstance(given, str):
-        if given != "own":
-            raise SceneError("sam_fraction", given, "must be a list of numbers, or 'own'")
+    if isinstance(sam_fraction, str):
+        if sam_fraction != "own":
+            raise SceneError("sam_fraction", sam_fraction, "must be a list of numbers, or 'own'")
         return [float(np.mean(base.coating.fractions))], [base]
-    fractions = np.atleast_1d(numbers_of(_FRACTIONS if given is None else given, "1")).tolist()
+    fractions = np.atleast_1d(numbers_of(_FRACTIONS if sam_fraction is None else sam_fraction, "1")).tolist()
     return fractions, [base.replace({"coating.sam_fraction": fraction}) for fraction in fractions]
 
 
 def _dataset(
     scene: GearScene, fractions: Sequence[float], searches: Sequence[_Search], *, simulated: bool
 ) -> xr.Dataset:
-    found = [each.result if simulated else (math.nan, math.nan) for each in searches]
-    turns, sticks = map(np.array, zip(*found, strict=True))
+    results = [search.result if simulated else (math.nan, math.nan) for search in searches]
+    turns, sticks = map(np.array, zip(*results, strict=True))
     values = {
-        "static_torque": np.array([each.static for each in searches]),
+        "static_torque": np.array([search.static for search in searches]),
         "simulated_torque": turns,
         "simulated_stuck": sticks,
         "part": np.array(PARTS),
-        "parts": np.array([parts_of(each.scene, each.static) for each in searches]),
-        "message": np.array([each.failure for each in searches]),
+        "parts": np.array([parts_of(search.scene, search.static) for search in searches]),
+        "message": np.array([search.failure for search in searches]),
     }
     attributes = {
         **provenance(scene, "searched the starting torque", swept=("coating.sam_fraction",)),
@@ -273,18 +273,18 @@ def _search_all(searches: Sequence[_Search], tolerance: float, how: Execution, k
     usual = len(searches) * (2 + max(halvings, 0))
     with how.side_by_side(kept, usual, len(searches)) as compute:
         while True:
-            wanted = [(each, each.next_torque(tolerance)) for each in searches]
-            todo = [(each, torque) for each, torque in wanted if torque is not None]
+            wanted = [(search, search.next_torque(tolerance)) for search in searches]
+            todo = [(search, torque) for search, torque in wanted if torque is not None]
             if not todo:
                 return
-            scenes = [_from_rest(each, torque) for each, torque in todo]
-            found = compute(_run_from_rest, scenes, _way(todo[0][0]))
-            for (each, torque), (_, word) in zip(todo, found, strict=True):
-                each.turned[torque] = word == "turns"
+            scenes = [_from_rest(search, torque) for search, torque in todo]
+            solved = compute(_run_from_rest, scenes, _way(todo[0][0]))
+            for (search, torque), (_, word) in zip(todo, solved, strict=True):
+                search.turned[torque] = word == "turns"
                 if failure := failure_of(word):
-                    each.failure = failure
-                    log.warning("one coverage has no simulated torque: %s", each.failure)
-            if all(each.failure for each in searches):
+                    search.failure = failure
+                    log.warning("one coverage has no simulated torque: %s", search.failure)
+            if all(search.failure for search in searches):
                 raise nothing_followed("coverage", searches[-1].failure)
 
 
@@ -330,14 +330,14 @@ def _dry(scene: GearScene) -> float:
     return pitch_of(scene).dry
 
 
-def _lowest(scene: GearScene, given: float | None) -> float:
-    lowest = _LOWEST * abs(scene.drive.torque) if given is None else given
+def _lowest(scene: GearScene, asked: float | None) -> float:
+    lowest = _LOWEST * abs(scene.drive.torque) if asked is None else asked
     if not 0.0 < lowest < math.inf:
         allowed = (
             "must be a positive torque; give the lowest to be tried (lowest=, --lowest) where the scene has no "
             "constant drive torque, as with drive.schedule"
         )
-        raise SceneError("lowest", given, allowed)
+        raise SceneError("lowest", asked, allowed)
     return lowest
 
 

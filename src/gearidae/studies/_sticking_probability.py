@@ -57,10 +57,10 @@ def sticking_probability(
         raise SceneError("confidence", confidence, "must be above 0 and below 1")
     ds = _along_members(ds)
     names = {key: name for key, name in drawn_keys(ds).items() if key != SEED}
-    own = np.isfinite(ds["sticks"].values)
+    finished = np.isfinite(ds["sticks"].values)
     if "matrix" in ds.coords:
-        own &= ~np.char.startswith(ds["matrix"].values.astype(str), "AB")
-    members = ds.isel(member=own)
+        finished &= ~np.char.startswith(ds["matrix"].values.astype(str), "AB")
+    members = ds.isel(member=finished)
     if not members.sizes["member"]:
         raise SceneError("dataset", "no member", "has been finished")
     if over is None:
@@ -110,7 +110,7 @@ def _along_members(ds: xr.Dataset) -> xr.Dataset:
         return ds
     dims = ds["status"].dims
     stacked = ds[["status"]].stack(member=dims).reset_index("member")
-    words = [one.verdict for one in outcomes(ds)]
+    words = [outcome.verdict for outcome in outcomes(ds)]
     codes = verdict_codes(words)
     return stacked.assign(sticks=("member", sticking(codes))).assign_attrs(ensemble="sweep")
 
@@ -137,7 +137,7 @@ def _band(groups: list[np.ndarray[Any, Any]], dims: tuple[str, ...], confidence:
     """Probability, interval and counts of each group."""
     from scipy.stats import binomtest  # which takes half a second to load, and pictures do without
 
-    counts = [(int(each.sum()), each.size) for each in groups]
+    counts = [(int(group.sum()), group.size) for group in groups]
     intervals = [
         binomtest(stuck, size).proportion_ci(confidence_level=confidence, method="wilson")
         for stuck, size in counts
@@ -145,8 +145,11 @@ def _band(groups: list[np.ndarray[Any, Any]], dims: tuple[str, ...], confidence:
     percent = f"{100.0 * confidence:g} %"
     columns = {
         "probability": ([stuck / size for stuck, size in counts], "share of the members that stick"),
-        "low": ([each.low for each in intervals], f"lower end of the {percent} confidence interval"),
-        "high": ([each.high for each in intervals], f"upper end of the {percent} confidence interval"),
+        "low": ([interval.low for interval in intervals], f"lower end of the {percent} confidence interval"),
+        "high": (
+            [interval.high for interval in intervals],
+            f"upper end of the {percent} confidence interval",
+        ),
         "stuck": ([stuck for stuck, _ in counts], "members that stick"),
         "members": ([size for _, size in counts], "members that are finished"),
     }

@@ -64,10 +64,10 @@ def draw_words(scene: Scene, keys: Mapping[str, str], runs: int, workers: int | 
     from gearidae.studies.design import without_seeds
     from gearidae.studies.distributions import read_distributions
 
-    own = without_seeds(scene, keys)
-    drawn = read_distributions(scene, own) if own or own is keys else ()
+    varied = without_seeds(scene, keys)
+    drawn = read_distributions(scene, varied) if varied or varied is keys else ()
     quantiles = (np.arange(_TRIED) + 0.5) / _TRIED
-    columns = {each.key: each.quantiles(quantiles).tolist() for each in drawn}
+    columns = {distribution.key: distribution.quantiles(quantiles).tolist() for distribution in drawn}
     scenes = [
         scene.replace(dict(zip(columns, row, strict=True))) for row in zip(*columns.values(), strict=True)
     ]

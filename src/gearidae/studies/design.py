@@ -115,11 +115,11 @@ def pick_freeze_design(distributions: Sequence[Distribution], size: int, design:
     """
     count = len(distributions)
     points = _points(2 * count, size, design, seed)
-    one, other = (_values(distributions, part) for part in np.split(points, 2, axis=1))
-    blocks, names = [one, other], ["A", "B"]
+    first, second = (_values(distributions, part) for part in np.split(points, 2, axis=1))
+    blocks, names = [first, second], ["A", "B"]
     for key in range(count):
-        mixed = one.copy()
-        mixed[:, key] = other[:, key]
+        mixed = first.copy()
+        mixed[:, key] = second[:, key]
         blocks.append(mixed)
         names.append(f"AB{key}")
     return Design(np.concatenate(blocks), np.repeat(names, size), np.tile(np.arange(size), len(blocks)))
@@ -142,7 +142,7 @@ def _points(dimensions: int, size: int, design: str, seed: int) -> Floats:
 
 
 def _values(distributions: Sequence[Distribution], points: Floats) -> Floats:
-    columns = [each.quantiles(points[:, number]) for number, each in enumerate(distributions)]
+    columns = [distribution.quantiles(points[:, number]) for number, distribution in enumerate(distributions)]
     return np.stack(columns, axis=1) if columns else points
 
 
@@ -156,12 +156,12 @@ def without_seeds(scene: Scene, vary: Mapping[str, Any]) -> Mapping[str, Any]:
     """
     if not isinstance(vary, Mapping) or SEED not in vary:
         return vary
-    given = vary[SEED]
-    if given != SEEDS:
+    value = vary[SEED]
+    if value != SEEDS:
         allowed = f'must be "{SEEDS}": the seeds of the members are numbered from the scene\'s own on'
-        raise SceneError(SEED, shorten(given), allowed)
+        raise SceneError(SEED, shorten(value), allowed)
     if not scene.contact.is_discrete:
-        raise SceneError(SEED, given, 'needs contact.roughness = "discrete": statistical ones draw nothing')
+        raise SceneError(SEED, value, 'needs contact.roughness = "discrete": statistical ones draw nothing')
     return {key: text for key, text in vary.items() if key != SEED}
 
 

@@ -168,36 +168,38 @@ def read_distributions(
     if not isinstance(vary, Mapping) or not vary:
         allowed = 'must be a table of keys and distributions, {"surface.energy": "lognormal(1.5 J/m^2, 1.2)"}'
         raise SceneError("vary", shorten(vary), allowed)
-    found = []
-    for key, given in vary.items():
-        unit = None if others is None else others(key, given)
-        found.append(read_distribution(key, given, _unit_of(scene, key, given) if unit is None else unit))
-    return tuple(found)
+    distributions = []
+    for key, value in vary.items():
+        unit = None if others is None else others(key, value)
+        distributions.append(
+            read_distribution(key, value, _unit_of(scene, key, value) if unit is None else unit)
+        )
+    return tuple(distributions)
 
 
-def _unit_of(scene: Scene, key: str, given: Any) -> str:
+def _unit_of(scene: Scene, key: str, value: Any) -> str:
     """Return the unit of a key of the scene that can be drawn."""
-    info = find_key(type(scene), key, given)
+    info = find_key(type(scene), key, value)
     if not info.unit:
-        raise SceneError(key, shorten(given), "is no key of a number: a distribution needs one")
+        raise SceneError(key, shorten(value), "is no key of a number: a distribution needs one")
     if key in _FIXED:
-        raise SceneError(key, shorten(given), "cannot be drawn: all runs take the same time")
+        raise SceneError(key, shorten(value), "cannot be drawn: all runs take the same time")
     return info.unit
 
 
-def read_distribution(key: str, given: Any, unit: str) -> Distribution:
+def read_distribution(key: str, value: Any, unit: str) -> Distribution:
     """Read one distribution, as for `read_distributions`, of a key whose SI unit is known."""
-    if isinstance(given, str):
-        return Distribution(key, " ".join(given.split()), _of_text(key, given, unit), unit)
-    if not callable(getattr(given, "ppf", None)):
+    if isinstance(value, str):
+        return Distribution(key, " ".join(value.split()), _of_text(key, value, unit), unit)
+    if not callable(getattr(value, "ppf", None)):
         allowed = f"must be a frozen distribution of scipy.stats, or a text: {_known()}"
-        raise SceneError(key, shorten(given), allowed)
-    arguments = (*getattr(given, "args", ()), *getattr(given, "kwds", {}).values())
-    if any(carried_unit(each)[0] for each in arguments):
+        raise SceneError(key, shorten(value), allowed)
+    arguments = (*getattr(value, "args", ()), *getattr(value, "kwds", {}).values())
+    if any(carried_unit(argument)[0] for argument in arguments):
         raise SceneError(
-            key, shorten(given), "carries units, which scipy.stats loses: give numbers in SI units"
+            key, shorten(value), "carries units, which scipy.stats loses: give numbers in SI units"
         )
-    return Distribution(key, _described(given), given, unit)
+    return Distribution(key, _described(value), value, unit)
 
 
 def _of_text(key: str, text: str, unit: str) -> Any:
@@ -219,8 +221,8 @@ def _of_text(key: str, text: str, unit: str) -> Any:
     numbers = []
     for place, part in enumerate(parts):
         try:
-            own = "1" if place in kind.pure else unit
-            numbers.append(_number(part, own, difference=place in kind.spread))
+            part_unit = "1" if place in kind.pure else unit
+            numbers.append(_number(part, part_unit, difference=place in kind.spread))
         except ValueError as error:
             raise SceneError(key, shorten(text), f"{kind.arguments[place]} {error}") from None
     try:
@@ -251,6 +253,6 @@ def _known() -> str:
 def _described(frozen: Any) -> str:
     """Write a frozen distribution with its parameters."""
     family = getattr(getattr(frozen, "dist", frozen), "name", type(frozen).__name__)
-    given = [f"{value:g}" for value in getattr(frozen, "args", ())]
-    given += [f"{name}={value:g}" for name, value in getattr(frozen, "kwds", {}).items()]
-    return f"{family}({', '.join(given)})"
+    texts = [f"{value:g}" for value in getattr(frozen, "args", ())]
+    texts += [f"{name}={value:g}" for name, value in getattr(frozen, "kwds", {}).items()]
+    return f"{family}({', '.join(texts)})"

@@ -66,7 +66,7 @@ class DrawnContact:
     ----------
     scene : Scene
         Whose materials and law they have.
-    one : FlankAsperities
+    flank : FlankAsperities
         The flank.
     contact : PairContact
         Radius, and attraction across the gap.
@@ -74,13 +74,13 @@ class DrawnContact:
         Where on the flank the pair touches [m].
     """
 
-    def __init__(self, scene: Scene, one: FlankAsperities, contact: PairContact, arc: float) -> None:
+    def __init__(self, scene: Scene, flank: FlankAsperities, contact: PairContact, arc: float) -> None:
         parts = {part.name: part for part in scene.materials()}
-        material = materials_at(scene, one, one.tooth + one.flank)
+        material = materials_at(scene, flank, flank.tooth + flank.flank)
         offsets = np.array([parts[name].gap_offset if name in parts else 0.0 for name in MATERIAL_NAMES])
-        top = one.height - offsets[material] - (one.arc - arc) ** 2 / (2.0 * contact.radius)
+        top = flank.height - offsets[material] - (flank.arc - arc) ** 2 / (2.0 * contact.radius)
         order = np.argsort(-top, kind="stable")
-        self._top, self._material, self._radius = top[order], material[order], one.radius[order]
+        self._top, self._material, self._radius = top[order], material[order], flank.radius[order]
         self._surfaces = [parts[name].surface if name in parts else scene.surface for name in MATERIAL_NAMES]
         self._name, self._contact, self._sigma = scene.contact.asperity, contact, scene.surface.roughness
         self._laws: dict[tuple[int, float], TipLaw] = {}
@@ -94,8 +94,8 @@ class DrawnContact:
         """Tops, distances of joining and of detachment of the nearest asperities [m], and who has which law."""
         material, radius = self._material[:count], self._radius[:count]
         join, detach, groups = np.empty(material.size), np.empty(material.size), []
-        for own, tip in sorted(set(zip(material.tolist(), radius.tolist(), strict=True))):
-            law, which = self._law(own, tip), np.flatnonzero((material == own) & (radius == tip))
+        for number, tip in sorted(set(zip(material.tolist(), radius.tolist(), strict=True))):
+            law, which = self._law(number, tip), np.flatnonzero((material == number) & (radius == tip))
             join[which], detach[which] = law.law.join * law.length, law.law.detach * law.length
             groups.append((law, which))
         return self._top[:count], join, detach, groups
@@ -192,16 +192,16 @@ def _largest_tension(
         at = start + (end - start) * np.linspace(0.0, 1.0, _BETWEEN) * (1.0 - 1e-12)
         tension = -force(at, held)
         k = int(np.argmax(tension))
-        found = float(tension[k])
-        if 0 < k < at.size - 1 and found > 0.5 * best:
+        largest = float(tension[k])
+        if 0 < k < at.size - 1 and largest > 0.5 * best:
             bounds = float(at[k - 1]), float(at[k + 1])
             finer = minimize_scalar(
                 lambda g, held=held: float(force(np.array([g]), held)[0]),
                 bounds=bounds,
                 options={"xatol": _CLOSE * sigma},
             )
-            found = max(found, -float(finer.fun))
-        if found > best:
-            best, holding = found, int(held.sum())
+            largest = max(largest, -float(finer.fun))
+        if largest > best:
+            best, holding = largest, int(held.sum())
     alone = -float(force(ends[-1:], np.zeros_like(joined))[0]) if ends.size else 0.0
     return (alone, 0) if alone > best else (best, holding)

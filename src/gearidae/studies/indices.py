@@ -91,8 +91,8 @@ def _estimate(table: Floats) -> Floats:
         "f_B": np.stack([table[1]] * 2),
         "f_AB": np.stack([table[2:]] * 2, axis=1),
     }
-    found = sobol_indices(func=twice, n=table.shape[1])
+    indices = sobol_indices(func=twice, n=table.shape[1])
     keys = len(table) - 2
     return np.stack(
-        [np.reshape(order, (2, keys))[0] for order in (found.first_order, found.total_order)]
+        [np.reshape(order, (2, keys))[0] for order in (indices.first_order, indices.total_order)]
     ).astype(np.float64)

@@ -54,9 +54,11 @@ def law_of_medians(name: str, parameters: Mapping[str, Any], vary: Mapping[str, 
     """
     middle = np.array([0.5])
     medians = {
-        each: float(read_distribution(_LAW + each, vary[_LAW + each], unit).quantiles(middle)[0])
-        for each, unit in loss_law_units(name).items()
-        if each not in parameters and _LAW + each in vary
+        parameter: float(
+            read_distribution(_LAW + parameter, vary[_LAW + parameter], unit).quantiles(middle)[0]
+        )
+        for parameter, unit in loss_law_units(name).items()
+        if parameter not in parameters and _LAW + parameter in vary
     }
     return loss_law(name, **medians, **parameters)
 
@@ -77,15 +79,15 @@ def parameter_units(law: LossLaw) -> Callable[[str, Any], str | None]:
     """
     units = _units(law)
 
-    def unit_of(key: str, given: Any) -> str | None:
+    def unit_of(key: str, value: Any) -> str | None:
         if not key.startswith(_LAW):
             return None
         name = key.removeprefix(_LAW)
         if name not in units:
-            known = [f"{_LAW}{each}" for each in units]
+            known = [f"{_LAW}{parameter}" for parameter in units]
             meant = did_you_mean(key, known)
             allowed = f"is no parameter of the loss law {law.name}; it has {', '.join(known)}"
-            raise SceneError(key, shorten(given), f"{allowed}{'; ' if meant else ''}{meant}")
+            raise SceneError(key, shorten(value), f"{allowed}{'; ' if meant else ''}{meant}")
         return units[name]
 
     return unit_of
@@ -112,8 +114,8 @@ def drawn_laws(
     SceneError
         If values are not allowed.
     """
-    own = {key: column for key, column in values.items() if key.startswith(_LAW)}
-    if not own:
+    columns = {key: column for key, column in values.items() if key.startswith(_LAW)}
+    if not columns:
         return [law] * size
 
     def make(drawn: dict[str, float]) -> LossLaw:
@@ -123,22 +125,22 @@ def drawn_laws(
             name = error.key.rpartition(".")[2]
             raise SceneError(f"{_LAW}{name}", error.value, error.allowed) from None
 
-    return drawn_members(make, own, drawn_from)
+    return drawn_members(make, columns, drawn_from)
 
 
 def _units(law: LossLaw) -> dict[str, str]:
     """Units of the parameters of a law and of those within it; the outer ones go before."""
-    found: dict[str, str] = {}
-    for value in (getattr(law, each.name) for each in fields(law)):
+    units: dict[str, str] = {}
+    for value in (getattr(law, field.name) for field in fields(law)):
         if isinstance(value, LossLaw):
-            found |= _units(value)
-    return found | law.parameter_units()
+            units |= _units(value)
+    return units | law.parameter_units()
 
 
 def _changed(law: LossLaw, values: Mapping[str, float]) -> LossLaw:
     """Change parameters of a law, and those that it has not of the law within it."""
-    own = {each.name: values[each.name] for each in fields(law) if each.name in values}
-    rest = {name: value for name, value in values.items() if name not in own}
-    within = {each.name: getattr(law, each.name) for each in fields(law)} if rest else {}
+    changes = {field.name: values[field.name] for field in fields(law) if field.name in values}
+    rest = {name: value for name, value in values.items() if name not in changes}
+    within = {field.name: getattr(law, field.name) for field in fields(law)} if rest else {}
     inner = {name: _changed(value, rest) for name, value in within.items() if isinstance(value, LossLaw)}
-    return replace(law, **own, **inner)
+    return replace(law, **changes, **inner)

@@ -102,25 +102,25 @@ class Coverage:
         cycles : int
             How many.
         """
-        found = exposure_variables(scene, [scene], [solution])
-        names = [each.name for each in scene.materials()]
+        variables = exposure_variables(scene, [scene], [solution])
+        names = [material.name for material in scene.materials()]
         contacts, work = (
-            dict(zip(names, found[name][1][0], strict=True))
+            dict(zip(names, variables[name][1][0], strict=True))
             for name in ("asperity_contacts", "adhesion_work")
         )
-        shared = [found[name][1][0] for name in ("sliding_work", "friction_work") if name in found]
-        shared.append(found["largest_pressure"][1][0])
+        shared = [variables[name][1][0] for name in ("sliding_work", "friction_work") if name in variables]
+        shared.append(variables["largest_pressure"][1][0])
         area = exposure_coordinates(scene)["flank_area"][1]
         if not self.independent:
             tables = (contacts["coated"], work["coated"], *shared)
-            return _exposure([each.ravel() for each in _gathered(tables, area, cycles, self.shapes[0])])
+            return _exposure([table.ravel() for table in _gathered(tables, area, cycles, self.shapes[0])])
         sides = []
         for other, shape in zip(self.split(np.clip(state, 0.0, 1.0))[::-1], self.shapes, strict=True):
             # what is covered meets a covered or a bare place of the other side
-            met = [other * each["coated"] + (1.0 - other) * each["mixed"] for each in (contacts, work)]
+            met = [other * table["coated"] + (1.0 - other) * table["mixed"] for table in (contacts, work)]
             sides.append(_gathered((*met, *shared), area, cycles, shape))
         ratio = _gear_over_pinion(scene, self.places)
-        gear = [each * ratio for each in sides[1][:-1]] + sides[1][-1:]
+        gear = [table * ratio for table in sides[1][:-1]] + sides[1][-1:]
         return _exposure(
             [np.concatenate([a.ravel(), b.ravel()]) for a, b in zip(sides[0], gear, strict=True)]
         )
@@ -139,17 +139,17 @@ def _exposure(numbers: Sequence[Floats]) -> Exposure:
 
 def _gathered(tables: Sequence[Floats], area: Floats, cycles: int, shape: tuple[int, int]) -> list[Floats]:
     """Put exposures by tooth of the pinion and place together as a side has them, per passage; pressures last."""
-    found = []
+    gathered = []
     for number, table in enumerate(tables):
         is_pressure = number == len(tables) - 1
-        each = table if is_pressure else table * len(table) / cycles
+        exposure = table if is_pressure else table * len(table) / cycles
         if shape[0] == 1:
-            each = (each.max(axis=0) if is_pressure else each.mean(axis=0))[None, :]
+            exposure = (exposure.max(axis=0) if is_pressure else exposure.mean(axis=0))[None, :]
         if shape[1] == 1:
-            mean = (each * area).sum(axis=1) / area.sum()
-            each = (each.max(axis=1) if is_pressure else mean)[:, None]
-        found.append(each)
-    return found
+            mean = (exposure * area).sum(axis=1) / area.sum()
+            exposure = (exposure.max(axis=1) if is_pressure else mean)[:, None]
+        gathered.append(exposure)
+    return gathered
 
 
 def _gear_over_pinion(scene: GearScene, places: int) -> Floats:
@@ -189,12 +189,12 @@ def coverage_of(scene: GearScene, resolved: str, places: int) -> Coverage:
 
 def _spread_table(coating: Coating, key: str, side: int, shape: tuple[int, int]) -> Floats:
     """Coverage of a side at the beginning, for as many teeth and places as are followed."""
-    given = np.array(coating.tables[side])
+    table = np.array(coating.tables[side])
     teeth, places = shape
-    if given.shape[1] not in (1, places) or given.shape[0] not in (1, teeth):
+    if table.shape[1] not in (1, places) or table.shape[0] not in (1, teeth):
         raise SceneError(
             f"coating.{key}",
-            f"{given.shape[0]} teeth, {given.shape[1]} places",
+            f"{table.shape[0]} teeth, {table.shape[1]} places",
             f"must have {'one tooth' if teeth == 1 else f'{teeth} teeth or one'}, and {places} places or one",
         )
-    return np.broadcast_to(given, shape).copy()
+    return np.broadcast_to(table, shape).copy()

@@ -35,7 +35,7 @@ _EXPOSURES: Final = {"contacts", "adhesion_work", "sliding_work", "friction_work
 
 
 def life_dataset(
-    scene: Scene, coverage: Coverage, found: Life, seen: Sequence[StateResult], *, frequency: bool
+    scene: Scene, coverage: Coverage, history: Life, seen: Sequence[StateResult], *, frequency: bool
 ) -> xr.Dataset:
     """Make the dataset of a life.
 
@@ -48,20 +48,20 @@ def life_dataset(
     frequency : bool
         Whether to find the characteristic frequency of each state.
     """
-    states, passages = np.array(found.states), np.array(found.passages)
+    states, passages = np.array(history.states), np.array(history.passages)
     tables = np.array([coverage.table(state) for state in states])
     values: dict[str, Any] = {
         "passages": passages,
         "side": list(coverage.sides),
         "coverage": tables.mean(axis=(2, 3)),
-        "coverage_loss": -np.array([coverage.table(each.rate) for each in seen]).mean(axis=(2, 3)),
-        "verdict": [_word(each) for each in seen],
-        "mean_gear_speed": [each.mean_speed for each in seen],
-        "min_gear_speed": [each.min_speed for each in seen],
+        "coverage_loss": -np.array([coverage.table(result.rate) for result in seen]).mean(axis=(2, 3)),
+        "verdict": [_word(result) for result in seen],
+        "mean_gear_speed": [result.mean_speed for result in seen],
+        "min_gear_speed": [result.min_speed for result in seen],
     }
     rubs = any(friction_values(scene).values())
     for name in _EXPOSURES if rubs else _EXPOSURES - {"friction_work"}:
-        parts = np.array([coverage.table(_mean(each, name, len(states[0]))) for each in seen])
+        parts = np.array([coverage.table(_mean(result, name, len(states[0]))) for result in seen])
         values[f"passage_{name}"] = parts.max(axis=(2, 3)) if name == "pressure" else parts.mean(axis=(2, 3))
         if name != "pressure":
             values[f"total_{name}"] = _cumulated(passages, values[f"passage_{name}"])
@@ -90,7 +90,7 @@ def _mean(seen: StateResult, name: str, size: int) -> Floats:
     """Mean of an exposure over the starts; NaN where the gear sticks."""
     if not seen.exposures:
         return np.full(size, math.nan)
-    return np.asarray(np.mean([getattr(each, name) for each in seen.exposures], axis=0))
+    return np.asarray(np.mean([getattr(exposure, name) for exposure in seen.exposures], axis=0))
 
 
 def _cumulated(passages: Floats, rates: Floats) -> Floats:
@@ -141,19 +141,19 @@ def assess_life(ds: xr.Dataset, chart: xr.Dataset, *, noise: float = 0.0, seed: 
     if not 0.0 <= noise < np.inf:
         raise SceneError("noise", noise, "must be a speed in rad/s, 0 or more")
     random = np.random.default_rng(seed)
-    found = []
+    assessments = []
     with interruptible():
         for number in range(ds.sizes["passages"]):
             signal = life_signal(ds, number)
-            found.append(assess(signal + noise * random.standard_normal(signal.size), chart))
-    columns = [(each.sam_fraction, each.low, each.high) for each in found]
-    values = np.where([[each.conclusive] for each in found], np.array(columns), np.nan)
+            assessments.append(assess(signal + noise * random.standard_normal(signal.size), chart))
+    columns = [(assessment.sam_fraction, assessment.low, assessment.high) for assessment in assessments]
+    values = np.where([[assessment.conclusive] for assessment in assessments], np.array(columns), np.nan)
     made: dict[str, Any] = {
         name: ("passages", values[:, number], {"units": "1", "long_name": words})
         for number, (name, words) in enumerate(_ASSESSED.items())
     }
     words = {"units": "1", "long_name": "verdict on the signal"}
-    made["assessed_verdict"] = ("passages", [each.verdict for each in found], words)
+    made["assessed_verdict"] = ("passages", [assessment.verdict for assessment in assessments], words)
     return ds.assign(made).assign_attrs(assessed_noise=float(noise))
 
 
@@ -180,20 +180,20 @@ def signal_of(scene: Scene, changes: Mapping[str, Any]) -> xr.Dataset:
     """Simulate what a sensor records, with a coverage of the life."""
     from gearidae.runs.simulation import simulate
 
-    own = scene.replace({**changes, "run.stop": "time", "run.exposures": 0})
-    return simulate(own, samples=own.run.samples if own.run.sample_count else SAMPLES)
+    changed = scene.replace({**changes, "run.stop": "time", "run.exposures": 0})
+    return simulate(changed, samples=changed.run.samples if changed.run.sample_count else SAMPLES)
 
 
 def _changes(state: xr.Dataset) -> dict[str, Any]:
     """What a state of a life changes in its scene."""
     if "coverage_by_place" in state:
         names = {"interface": "pinion", "pinion": "pinion", "gear": "gear"}
-        found: dict[str, Any] = {"coating.pinion_fraction": None, "coating.gear_fraction": None}
+        changes: dict[str, Any] = {"coating.pinion_fraction": None, "coating.gear_fraction": None}
         for side in state["side"].values.tolist():
             table = state["coverage_by_place"].sel(side=side).values
             # the rows of the pinion's teeth hold what all teeth of the gear have alike
-            found[f"coating.{names[side]}_table"] = (table[:1] if side == "gear" else table).tolist()
-        return found
+            changes[f"coating.{names[side]}_table"] = (table[:1] if side == "gear" else table).tolist()
+        return changes
     shares = {side: float(state["coverage"].sel(side=side)) for side in state["side"].values.tolist()}
     if "interface" in shares:
         return {"coating.sam_fraction": shares["interface"]}

@@ -122,26 +122,26 @@ class Windows:
             changed.replace({"initial.mesh_phase": (phase + number / self.starts) % 1.0})
             for number in range(self.starts)
         ]
-        found = list(solutions(self.kept, self.executor, run_window, scenes, self.cycles, self.backend))
+        solved = list(solutions(self.kept, self.executor, run_window, scenes, self.cycles, self.backend))
         self.run += len(scenes)
-        stuck = any(word == "sticks" for _, word in found)
+        stuck = any(word == "sticks" for _, word in solved)
         if stuck:
             exposures: tuple[Exposure, ...] = ()
             rate = np.full_like(state, math.nan)
         else:
             exposures = tuple(
                 self.coverage.exposure(scene, solution, self.cycles.count, state)
-                for scene, (solution, _) in zip(scenes, found, strict=True)
+                for scene, (solution, _) in zip(scenes, solved, strict=True)
             )
-            rate = np.mean([self.law.rate(state, each) for each in exposures], axis=0)
-        extremes = [solution.extremes for solution, _ in found if solution.extremes is not None]
-        self.mesh_cycles += sum(each.mesh_exits for each in extremes)
+            rate = np.mean([self.law.rate(state, exposure) for exposure in exposures], axis=0)
+        extremes = [solution.extremes for solution, _ in solved if solution.extremes is not None]
+        self.mesh_cycles += sum(extreme.mesh_exits for extreme in extremes)
         return StateResult(
             stuck,
             rate,
             exposures,
-            float(np.mean([each.settled_gear_speed for each in extremes])),
-            min(each.min_gear_speed for each in extremes),
+            float(np.mean([extreme.settled_gear_speed for extreme in extremes])),
+            min(extreme.min_gear_speed for extreme in extremes),
         )
 
 
@@ -218,28 +218,28 @@ class DirectCycles:
         """Simulate a cycle."""
         windows, state = self.windows, here.state
         scene = part_of(windows.scene_at(state), 1, windows.cycles.total, _PATIENCE)
-        found = solved(scene, windows.backend, here.start)
-        if stands(found, scene) or found.checkpoint is None:
+        solution = solved(scene, windows.backend, here.start)
+        if stands(solution, scene) or solution.checkpoint is None:
             raise GearStuck(here.passages + self.cycle)
-        seen = self._see(scene, found, here)
+        seen = self._see(scene, solution, here)
         self.seen[state.tobytes()] = seen
         self.run += 1
         windows.say()
         after = np.clip(state + seen.rate * self.cycle, 0.0, 1.0)
-        start = engine.end_of(scene, found.checkpoint, here.start.time)
-        return _BetweenCycles(here.passages + self.cycle, after, start, found, here.passages, state)
+        start = engine.end_of(scene, solution.checkpoint, here.start.time)
+        return _BetweenCycles(here.passages + self.cycle, after, start, solution, here.passages, state)
 
-    def _see(self, scene: GearScene, found: Solution, here: _BetweenCycles) -> StateResult:
+    def _see(self, scene: GearScene, solution: Solution, here: _BetweenCycles) -> StateResult:
         """What a cycle has shown; where the coverage is that of the run before, its exposures go on."""
-        assert found.extremes is not None
+        assert solution.extremes is not None
         assert here.start.scene is not None
         same = scene.coating == here.start.scene.coating
-        exposures = gained(found, here.run if same else None, scene)
-        exposure = self.windows.coverage.exposure(scene, with_exposures(found, exposures), 1, here.state)
-        assert found.reached is not None
-        speed = 2.0 * math.pi / (scene.gears.gear_teeth * (found.reached - here.start.time))
+        exposures = gained(solution, here.run if same else None, scene)
+        exposure = self.windows.coverage.exposure(scene, with_exposures(solution, exposures), 1, here.state)
+        assert solution.reached is not None
+        speed = 2.0 * math.pi / (scene.gears.gear_teeth * (solution.reached - here.start.time))
         rate = self.windows.law.rate(here.state, exposure)
-        return StateResult(False, rate, (exposure,), speed, found.extremes.min_gear_speed)
+        return StateResult(False, rate, (exposure,), speed, solution.extremes.min_gear_speed)
 
 
 @dataclass(frozen=True, slots=True)

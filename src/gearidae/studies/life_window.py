@@ -118,25 +118,25 @@ def run_window(scene: GearScene, cycles: Cycles, backend: str) -> tuple[Solution
         If a run could not be finished.
     """
     window = steady_window(scene, cycles, backend)
-    found = replace(window.solution, events=unsolved("", "").events, checkpoint=None)
+    solution = replace(window.solution, events=unsolved("", "").events, checkpoint=None)
     if window.exposures is None:
-        return found, "sticks"
-    return with_exposures(found, window.exposures), "turns"
+        return solution, "sticks"
+    return with_exposures(solution, window.exposures), "turns"
 
 
-def with_exposures(found: Solution, exposures: Floats) -> Solution:
+def with_exposures(solution: Solution, exposures: Floats) -> Solution:
     """Put other exposures in the place of a run's own.
 
     Parameters
     ----------
-    found : Solution
+    solution : Solution
         With extremes.
     exposures : ndarray
         As `gained` has them.
     """
-    assert found.extremes is not None
-    extremes = Extremes(found.extremes, exposures=array("d", exposures.tobytes()))
-    return replace(found, extremes=extremes)
+    assert solution.extremes is not None
+    extremes = Extremes(solution.extremes, exposures=array("d", exposures.tobytes()))
+    return replace(solution, extremes=extremes)
 
 
 def steady_window(scene: GearScene, cycles: Cycles, backend: str) -> Window:
@@ -163,15 +163,15 @@ def steady_window(scene: GearScene, cycles: Cycles, backend: str) -> Window:
     block = part_of(scene, cycles.count, cycles.total)
     tables: list[Floats] = []
     while True:
-        found = solved(block, backend, start)
-        if stands(found, block) or found.checkpoint is None:
-            return Window(found)
-        tables.append(gained(found, before, scene))
-        start = engine.end_of(block, found.checkpoint, start.time)
+        solution = solved(block, backend, start)
+        if stands(solution, block) or solution.checkpoint is None:
+            return Window(solution)
+        tables.append(gained(solution, before, scene))
+        start = engine.end_of(block, solution.checkpoint, start.time)
         exposures = steady_exposures(tables, cycles.tolerance)
         if exposures is not None:
-            return Window(found, exposures, start)
-        before = found
+            return Window(solution, exposures, start)
+        before = solution
 
 
 def part_of(scene: GearScene, cycles: int, total: int, patience: float = 1.0) -> GearScene:
@@ -209,7 +209,7 @@ def steady_exposures(blocks: Sequence[Floats], tolerance: float) -> Floats | Non
     if tolerance == math.inf:
         return blocks[-1]
     contacts = [
-        float(each[: len(each) // 2, : _ROWS.adhesion].sum()) for each in blocks[-3:]
+        float(block[: len(block) // 2, : _ROWS.adhesion].sum()) for block in blocks[-3:]
     ]  # of the drive flank
     changes = np.diff(contacts)
     if not changes.size:
@@ -224,9 +224,11 @@ def steady_exposures(blocks: Sequence[Floats], tolerance: float) -> Floats | Non
 
 def stands(solution: Solution, scene: GearScene) -> bool:
     """Whether the gear stands at the end of a run that was to end after some turns, or has not turned so far."""
-    found, reached = solution.extremes, solution.reached or 0.0
+    extremes, reached = solution.extremes, solution.reached or 0.0
     late = reached - solution.start >= scene.run.duration * (1.0 - 1e-9)
-    return found is None or late or not (math.isnan(found.stick_time) and math.isnan(found.back_time))
+    return (
+        extremes is None or late or not (math.isnan(extremes.stick_time) and math.isnan(extremes.back_time))
+    )
 
 
 def solved(scene: GearScene, backend: str, start: engine.Start = engine.AT_ONCE) -> Solution:

@@ -125,7 +125,7 @@ def along_members(ds: xr.Dataset, keys: Sequence[str]) -> xr.Dataset:
 
 def names_of(distributions: Sequence[Distribution]) -> dict[str, str]:
     """Distributions in words, by their keys."""
-    return {each.key: each.text for each in distributions}
+    return {distribution.key: distribution.text for distribution in distributions}
 
 
 def count_rows(words: xr.DataArray) -> Rows:

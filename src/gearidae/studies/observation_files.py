@@ -14,7 +14,7 @@ from gearidae.scene.table_head import open_table
 from gearidae.scene.text_table import check_regular
 from gearidae.studies.observations import Observation
 
-_OWN: Final = ("of", "value", "uncertainty", "misjudged")
+_FIELDS: Final = ("of", "value", "uncertainty", "misjudged")
 """What is said of an observation beside its conditions."""
 _LARGEST: Final = 10_000_000  # bytes
 
@@ -49,25 +49,25 @@ def read_observations(path: str | os.PathLike[str]) -> list[Observation]:
     except (OSError, ValueError) as error:
         reason = "is no text" if isinstance(error, UnicodeDecodeError) else error
         raise SceneError("observations", path, f"cannot be read: {reason}") from error
-    found = []
-    for number, given in enumerate(rows, 1):
+    observations = []
+    for number, row in enumerate(rows, 1):
         try:
-            found.append(observation_of(given))
+            observations.append(observation_of(row))
         except SceneError as error:
             raise SceneError(
                 f"observation {number} of {source}: {error.key}", error.value, error.allowed
             ) from None
-    if not found:
+    if not observations:
         raise SceneError("observations", path, "must hold at least one observation")
-    return found
+    return observations
 
 
-def observation_of(given: Mapping[str, Any]) -> Observation:
+def observation_of(entry: Mapping[str, Any]) -> Observation:
     """Make an observation of what a file or a command line says of it.
 
     Parameters
     ----------
-    given : mapping of str to object
+    entry : mapping of str to object
         ``of``, ``value``, ``uncertainty``, ``misjudged``, ``conditions`` (a table of keys, nested or dotted), or dotted
         keys of the scene, which are conditions, too.
 
@@ -76,24 +76,24 @@ def observation_of(given: Mapping[str, Any]) -> Observation:
     SceneError
         If a name is not known, the value is missing, or something is not allowed.
     """
-    own = {name: given[name] for name in _OWN if name in given}
+    fields = {name: entry[name] for name in _FIELDS if name in entry}
     conditions: dict[str, Any] = {}
-    for name, value in given.items():
+    for name, value in entry.items():
         if name == "conditions":
             if not isinstance(value, Mapping):
                 raise SceneError("conditions", shorten(value), "must be a table of keys and values")
             conditions |= dict(_dotted(value))
         elif "." in name:
             conditions[name] = value
-        elif name not in _OWN:
+        elif name not in _FIELDS:
             meant = (
-                did_you_mean(name, (*_OWN, "conditions"))
-                or f"known are {', '.join(_OWN)}, and keys with a dot"
+                did_you_mean(name, (*_FIELDS, "conditions"))
+                or f"known are {', '.join(_FIELDS)}, and keys with a dot"
             )
             raise SceneError(name, shorten(value), f"unknown word; {meant}")
-    if "value" not in own:
+    if "value" not in fields:
         raise SceneError("value", "(missing)", "is required: whether the gear stuck, or what was measured")
-    return Observation(**own, conditions=conditions)
+    return Observation(**fields, conditions=conditions)
 
 
 def _dotted(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
@@ -110,7 +110,7 @@ def _tables(source: Path) -> list[Mapping[str, Any]]:
     data = read_toml(source.read_text(encoding="utf-8-sig"))
     unknown = [name for name in data if name != "observation"]
     listed = data.get("observation", [])
-    if unknown or not isinstance(listed, list) or not all(isinstance(each, dict) for each in listed):
+    if unknown or not isinstance(listed, list) or not all(isinstance(table, dict) for table in listed):
         shown = unknown[0] if unknown else "observation"
         raise SceneError(
             "observations", shown, f"must be tables [[observation]] in {source}, and nothing else"
@@ -121,5 +121,5 @@ def _tables(source: Path) -> list[Mapping[str, Any]]:
 def _rows(source: Path) -> Iterator[Mapping[str, Any]]:
     table = open_table(source, largest=_LARGEST, names=lambda headings: "value" in headings)
     for _, _, cells in table.rows():
-        given = zip(table.headings, cells, strict=True)
-        yield {name: literal(cell) for name, cell in given if cell}
+        row = zip(table.headings, cells, strict=True)
+        yield {name: literal(cell) for name, cell in row if cell}

@@ -120,5 +120,5 @@ class Observation:
             return np.asarray(np.log(np.where(np.isnan(predicted), 0.5, share)))
         with np.errstate(over="ignore"):  # impossible, which it may be
             squares = ((predicted - float(self.value)) / self.spread) ** 2
-        found = -0.5 * squares - math.log(self.spread * math.sqrt(2.0 * math.pi))
-        return np.where(np.isnan(found), -math.inf, found)
+        logarithm = -0.5 * squares - math.log(self.spread * math.sqrt(2.0 * math.pi))
+        return np.where(np.isnan(logarithm), -math.inf, logarithm)

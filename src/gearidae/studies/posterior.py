@@ -58,13 +58,15 @@ def grid_posterior(
         If the observations are impossible everywhere.
     """
     axes = []
-    for each in priors:
-        low, high = each.quantiles(np.array([_TAIL, 1.0 - _TAIL]))
+    for distribution in priors:
+        low, high = distribution.quantiles(np.array([_TAIL, 1.0 - _TAIL]))
         axes.append(low + (high - low) * (np.arange(points) + 0.5) / points)
     mesh = np.meshgrid(*axes, indexing="ij")
-    nodes = np.stack([each.ravel() for each in mesh], axis=1)
+    nodes = np.stack([table.ravel() for table in mesh], axis=1)
     likelihood = log_likelihood(nodes)
-    prior = np.sum([each.log_density(nodes[:, number]) for number, each in enumerate(priors)], axis=0)
+    prior = np.sum(
+        [distribution.log_density(nodes[:, number]) for number, distribution in enumerate(priors)], axis=0
+    )
     total = likelihood + prior
     if not np.isfinite(total.max()):
         raise SceneError("observations", "(all of them)", "are impossible for every value on the grid")
@@ -85,7 +87,11 @@ def grid_posterior(
             ),
         },
         coords={name: (name, axis) for name, axis in zip(names, axes, strict=True)},
-    ).merge(summary(nodes, weight, [each.key for each in priors], [np.ptp(axis[:2]) for axis in axes]))
+    ).merge(
+        summary(
+            nodes, weight, [distribution.key for distribution in priors], [np.ptp(axis[:2]) for axis in axes]
+        )
+    )
 
 
 def sampled_posterior(
@@ -133,7 +139,10 @@ def sampled_posterior(
     walkers = max(_WALKERS, 4 * count)
 
     def log_posterior(points: Floats) -> tuple[Floats, Floats]:
-        prior = np.sum([each.log_density(points[:, number]) for number, each in enumerate(priors)], axis=0)
+        prior = np.sum(
+            [distribution.log_density(points[:, number]) for number, distribution in enumerate(priors)],
+            axis=0,
+        )
         likelihood = np.full(len(points), -np.inf)
         inside = np.isfinite(prior)
         if inside.any():
@@ -145,7 +154,9 @@ def sampled_posterior(
 
     generator = np.random.default_rng(seed)
     share = generator.random((walkers, count))
-    start = np.stack([each.quantiles(share[:, number]) for number, each in enumerate(priors)], axis=1)
+    start = np.stack(
+        [distribution.quantiles(share[:, number]) for number, distribution in enumerate(priors)], axis=1
+    )
     sampler = emcee.EnsembleSampler(
         walkers, count, with_blob, vectorize=True, blobs_dtype=[("likelihood", float)]
     )
@@ -160,7 +171,9 @@ def sampled_posterior(
     ds = xr.Dataset(made).assign(
         log_likelihood=("draw", likelihood, {"long_name": "logarithm of the likelihood", "units": "1"})
     )
-    ds = ds.merge(summary(draws, np.full(len(draws), 1.0 / len(draws)), [each.key for each in priors]))
+    ds = ds.merge(
+        summary(draws, np.full(len(draws), 1.0 / len(draws)), [distribution.key for distribution in priors])
+    )
     acceptance = float(sampler.acceptance_fraction.mean())
     return ds.assign_attrs(acceptance=acceptance, steps_kept=steps - burnt, autocorrelation_time=time)
 

@@ -52,9 +52,9 @@ class Predictor:
     def __init__(
         self, base: Scene, keys: tuple[str, ...], observations: tuple[Observation, ...], how: Execution
     ) -> None:
-        self._sampled = any(each.of == RING for each in observations)
+        self._sampled = any(observation.of == RING for observation in observations)
         self._varied = tuple(
-            dict.fromkeys([*keys, *(key for each in observations for key in each.conditions)])
+            dict.fromkeys([*keys, *(key for observation in observations for key in observation.conditions)])
         )
         fixed = [key for key in self._varied if key in _ONE_TIME_AXIS]
         if self._sampled and fixed:
@@ -91,16 +91,16 @@ class Predictor:
         Interrupted
             On Ctrl-C.
         """
-        found = np.full((len(values), len(self._observations)), math.nan)
+        predicted = np.full((len(values), len(self._observations)), math.nan)
         scenes: list[Scene] = []
         place: dict[Scene, int] = {}
         wanted: list[tuple[int, int, int]] = []
         for row, point in enumerate(values.tolist()):
             changed = self._base.replace(dict(zip(self._keys, point, strict=True)))
-            for column, each in enumerate(self._observations):
-                scene = changed.replace(dict(each.conditions)) if each.conditions else changed
-                if not isinstance(each.of, str):
-                    found[row, column] = float(each.of(scene))
+            for column, observation in enumerate(self._observations):
+                scene = changed.replace(dict(observation.conditions)) if observation.conditions else changed
+                if not isinstance(observation.of, str):
+                    predicted[row, column] = float(observation.of(scene))
                     continue
                 if scene not in place:
                     place[scene] = len(scenes)
@@ -108,8 +108,8 @@ class Predictor:
                 wanted.append((row, column, place[scene]))
         figures = self._run(scenes, progress) if scenes else []
         for row, column, number in wanted:
-            found[row, column] = figures[number][str(self._observations[column].of)]
-        return found
+            predicted[row, column] = figures[number][str(self._observations[column].of)]
+        return predicted
 
     def _run(self, scenes: Sequence[Scene], progress: bool | SweepProgress) -> list[dict[str, float]]:
         """Run scenes and read the figures of each."""
@@ -126,9 +126,9 @@ class Predictor:
     def _read(self, ds: xr.Dataset) -> list[dict[str, float]]:
         """Figures of each run of a dataset."""
         columns = {STICKS: sticking(verdict_codes(ds["verdict"].values))}
-        for each in self._observations:
-            if isinstance(each.of, str) and each.of not in (STICKS, RING):
-                columns[each.of] = ds[each.of].values.astype(np.float64)
+        for observation in self._observations:
+            if isinstance(observation.of, str) and observation.of not in (STICKS, RING):
+                columns[observation.of] = ds[observation.of].values.astype(np.float64)
         if self._sampled:
             columns[RING] = np.array([_ring(run) for _, run in runs(ds)])
         return [

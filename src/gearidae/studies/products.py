@@ -43,9 +43,9 @@ def open_product(path: str | os.PathLike[str], kind: str | None = None) -> tuple
             ds = studies()["life"].read(path)
         except SceneError:
             raise no_archive from None
-        if (found := kind_of(ds)) == "runs":
+        if (content := kind_of(ds)) == "runs":
             raise
-        return ds, found
+        return ds, content
 
 
 def open(path: str | os.PathLike[str]) -> xr.Dataset:  # noqa: A001

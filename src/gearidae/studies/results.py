@@ -173,13 +173,13 @@ class Results:
         if "sam_fraction" in ds.coords and not ds["sam_fraction"].dims:
             columns.setdefault("sam_fraction", ds["sam_fraction"].values.item())
         for name in ("verdict", "words", "status"):
-            columns[name] = [getattr(each, name) for each in judged]
+            columns[name] = [getattr(outcome, name) for outcome in judged]
         for name in EXTREMES:
             if name in ds and ds[name].dims == dims:
                 columns[name] = ds[name].values.reshape(len(judged))
         for name in ("restitution", "impacts", "wall_time"):
             if hasattr(judged[0], name):
-                columns[name] = [getattr(each, name) for each in judged]
+                columns[name] = [getattr(outcome, name) for outcome in judged]
         return pd.DataFrame(columns)
 
     def standstills(self) -> pd.DataFrame:
@@ -247,7 +247,9 @@ class Results:
         count = math.prod(ds.sizes[dim] for dim in dims)
         of = "" if "name" in dims else f" of {name}"
         what = f"{count} runs{of} along {along}" if dims else f"run of {name}"
-        ended = ": ".join(filter(None, (str(ds.attrs.get(each, "")) for each in ("status", "message"))))
+        ended = ": ".join(
+            filter(None, (str(ds.attrs.get(attribute, "")) for attribute in ("status", "message")))
+        )
         return f"<{what}, {ended}>"
 
     def _offers(self) -> Iterator[tuple[str, str]]:
@@ -261,10 +263,10 @@ class Results:
             not dims,
             kind == "runs" or ("swept" in ds.attrs and "min_gear_speed" in ds),
         )  # of ensembles, too
-        one = ", ".join(f"{dim}={_label(ds[dim])}" for dim in dims)
+        labels = ", ".join(f"{dim}={_label(ds[dim])}" for dim in dims)
         names = {
             "scene": of_runs and single,
-            f"run({one})": of_runs and not single,
+            f"run({labels})": of_runs and not single,
             "sel": of_runs and not single,
             "scenes": of_runs and not single,
             "template": not (of_runs and single),
@@ -289,7 +291,7 @@ class Results:
 def _picked(ds: xr.Dataset, name: str, value: Any) -> xr.Dataset:
     """Pick the runs that have a value of a coordinate."""
     dims = swept_dims(ds)
-    known = [str(each) for each in ds.coords if each not in LABELS]
+    known = [str(coordinate) for coordinate in ds.coords if coordinate not in LABELS]
     if name not in known:
         raise SceneError("run", name, f"must be one of {', '.join(known)}")
     labels = np.atleast_1d(ds[name].values)
@@ -297,16 +299,16 @@ def _picked(ds: xr.Dataset, name: str, value: Any) -> xr.Dataset:
     if labels.dtype.kind in "fiu" and isinstance(value, int | float | np.number):
         # a value as it is printed is not always the same float
         exact = labels == value
-        found = exact if exact.any() else np.isclose(labels, float(value), rtol=1e-9, atol=0.0)
+        matches = exact if exact.any() else np.isclose(labels, float(value), rtol=1e-9, atol=0.0)
     else:
-        found = labels == value
-    if not np.any(found):
+        matches = labels == value
+    if not np.any(matches):
         raise SceneError(f"run({name})", asked, f"must be one of {_shown(labels)}")
     if not ds[name].dims:
         return ds
     (dim,) = ds[name].dims
     assert dim in dims
-    places = np.flatnonzero(found)
+    places = np.flatnonzero(matches)
     return ds.isel({dim: int(places[0]) if len(places) == 1 else places})
 
 

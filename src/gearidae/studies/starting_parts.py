@@ -106,5 +106,9 @@ def parts_of(scene: GearScene, torques: ArrayLike) -> Floats:
     hold = (torque - whole.torque()) / whole.ratio
     nothing = 0.0 * hold
     more = [Starting(scene, frozenset(_ELEMENTS[:count])) for count in range(len(_ELEMENTS) + 1)]
-    steps = [nothing, more[0].torque() + nothing, *(each.torque() + each.ratio * hold for each in more)]
+    steps = [
+        nothing,
+        more[0].torque() + nothing,
+        *(element.torque() + element.ratio * hold for element in more),
+    ]
     return np.diff(np.stack(steps, axis=-1), axis=-1)

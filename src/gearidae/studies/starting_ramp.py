@@ -123,8 +123,8 @@ def place_of_seed(scene: GearScene, seed: int) -> float:
 
 def pilot(at: GearScene) -> GearScene:
     """Add a torque that doubles again and again to a scene from `laid`: it finds the scale of its starting torque."""
-    pitch, surfaces = pitch_of(at), [one.surface for one in at.materials() if one.share > 0.0]
-    tips = [asperity_of(one) for one in surfaces]
+    pitch, surfaces = pitch_of(at), [material.surface for material in at.materials() if material.share > 0.0]
+    tips = [asperity_of(surface) for surface in surfaces]
     pulls = [tip.pull_off for tip in tips if tip.pull_off > 0.0]
     force = min(pulls, default=tips[0].hertz_factor * at.surface.roughness**1.5)
     torque = _PILOT_TORQUE * force * at.geometry.base_radius_pinion

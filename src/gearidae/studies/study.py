@@ -51,8 +51,8 @@ class Column:
 
     def attributes(self, **named: str) -> dict[str, str]:
         """Attributes of the variable."""
-        found = {"units": self.units.format(**named), "long_name": self.words.format(**named)}
-        return {name: text for name, text in found.items() if text}
+        texts = {"units": self.units.format(**named), "long_name": self.words.format(**named)}
+        return {name: text for name, text in texts.items() if text}
 
 
 @dataclass(frozen=True, slots=True)
@@ -255,9 +255,11 @@ class Study:
             for name, column in self.columns.items()
             if name in values
         }
-        coords = {name: one for name, one in made.items() if one[0] == (name,)}
+        coords = {name: variable for name, variable in made.items() if variable[0] == (name,)}
         return xr.Dataset(
-            {name: one for name, one in made.items() if name not in coords}, coords, dict(attributes)
+            {name: variable for name, variable in made.items() if name not in coords},
+            coords,
+            dict(attributes),
         )
 
     def compute(

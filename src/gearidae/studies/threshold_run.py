@@ -46,14 +46,14 @@ class ThresholdRun:
     @classmethod
     def of(cls, value: float, solution: Solution) -> ThresholdRun:
         """Read a solution."""
-        found = solution.extremes
-        if found is None or solution.status != "finished":
+        extremes = solution.extremes
+        if extremes is None or solution.status != "finished":
             failure = unfinished(solution, f"the run at {value:g}")
             return cls(value, 0, math.nan, solution.reached or 0.0, failure)
-        if not has_stuck(found):
-            return cls(value, found.mesh_exits, math.nan, solution.reached or 0.0)
-        time = found.back_time if math.isnan(found.stick_time) else found.stick_time
-        return cls(value, found.stick_exits, time, solution.reached or 0.0)
+        if not has_stuck(extremes):
+            return cls(value, extremes.mesh_exits, math.nan, solution.reached or 0.0)
+        time = extremes.back_time if math.isnan(extremes.stick_time) else extremes.stick_time
+        return cls(value, extremes.stick_exits, time, solution.reached or 0.0)
 
 
 def run_until(scene: Scene, exits: int, backend: str) -> tuple[Solution, str]:
@@ -71,9 +71,9 @@ def run_until(scene: Scene, exits: int, backend: str) -> tuple[Solution, str]:
     scheduled = is_scheduled(scene.to_dict())
     while True:
         solution = solve_to_end(scene.replace({"run.duration": duration}), backend)
-        found = solution.extremes
-        moves = found is not None and math.isnan(found.stick_time) and math.isnan(found.back_time)
-        slow = not scheduled and moves and found is not None and found.mesh_exits < exits
+        extremes = solution.extremes
+        moves = extremes is not None and math.isnan(extremes.stick_time) and math.isnan(extremes.back_time)
+        slow = not scheduled and moves and extremes is not None and extremes.mesh_exits < exits
         if not slow or solution.status != "finished" or duration >= longest:
             return replace(solution, events=unsolved("", "").events), ""
         duration *= 2.0

@@ -67,15 +67,15 @@ def compare(a: xr.Dataset, b: xr.Dataset) -> pd.DataFrame:
 
     _require_same_labels(a, b)
     largest: dict[str, Difference] = {}
-    for (label, one), (_, other) in zip(runs(a), runs(b), strict=True):
+    for (label, run), (_, other_run) in zip(runs(a), runs(b), strict=True):
         at = ", ".join(
             f"{dim}={value:g}" if isinstance(value, float) else f"{dim}={value}"
             for dim, value in label.items()
         )
-        for name, found in _differences(one, other):
-            found = found._replace(where=", ".join(part for part in (at, found.where) if part))
-            if name not in largest or not found.relative <= largest[name].relative:
-                largest[name] = found
+        for name, difference in _differences(run, other_run):
+            difference = difference._replace(where=", ".join(part for part in (at, difference.where) if part))
+            if name not in largest or not difference.relative <= largest[name].relative:
+                largest[name] = difference
     if not largest:
         raise SceneError("compare", "two datasets", "must have a variable in common")
     table = pd.DataFrame.from_dict(largest, orient="index", columns=COLUMNS)
@@ -102,13 +102,17 @@ def _require_same_labels(a: xr.Dataset, b: xr.Dataset) -> None:
                 f"must have as many values in both datasets, and not {a.sizes[name]} and {b.sizes[name]}"
             )
             raise SceneError("compare", name, f"{allowed}; pick common ones with ds.sel or ds.isel")
-        one, other = a[name].values, b[name].values
-        same = one == other if one.dtype.kind != "f" else np.isclose(one, other, rtol=1e-9, atol=0.0)
+        labels, other_labels = a[name].values, b[name].values
+        same = (
+            labels == other_labels
+            if labels.dtype.kind != "f"
+            else np.isclose(labels, other_labels, rtol=1e-9, atol=0.0)
+        )
         if not same.all():
             place = int(np.flatnonzero(~same)[0])
             raise SceneError(
                 "compare",
-                f"{name} {one[place]} and {other[place]}",
+                f"{name} {labels[place]} and {other_labels[place]}",
                 "must have the same values in both datasets",
             )
 
@@ -125,13 +129,13 @@ def _differences(a: xr.Dataset, b: xr.Dataset) -> Iterator[tuple[str, Difference
                     math.nan, math.nan, 0.0 if same else math.inf, words[0] if same else " and ".join(words)
                 ),
             )
-    one, other = _totals(a), _totals(b)
-    scales = _scales(a, one, b, other)
-    for name in (each for each in one if each in other):
-        yield name, _largest(np.array([one[name]]), np.array([other[name]]), scales.get(name))
+    totals, other_totals = _totals(a), _totals(b)
+    scales = _scales(a, totals, b, other_totals)
+    for name in (total for total in totals if total in other_totals):
+        yield name, _largest(np.array([totals[name]]), np.array([other_totals[name]]), scales.get(name))
     for key, variable in a.data_vars.items():
         name = str(key)
-        if name in one or name in _LEFT_OUT or name not in b.data_vars or {*DIMS} & {*variable.dims}:
+        if name in totals or name in _LEFT_OUT or name not in b.data_vars or {*DIMS} & {*variable.dims}:
             continue
         if variable.dtype.kind in "fiu" and variable.dims == b[name].dims:
             yield name, _of_samples(variable, b[name])
@@ -155,19 +159,21 @@ def _word(run: xr.Dataset, name: str) -> Any:
 
 def _totals(run: xr.Dataset) -> dict[str, float]:
     """Numbers of a whole run: its extremes and the terms of its energy balance."""
-    found = {name: float(run[name]) for name in EXTREMES if name in run.variables and not run[name].dims}
+    totals = {name: float(run[name]) for name in EXTREMES if name in run.variables and not run[name].dims}
     balance = balance_of(run) or {}
-    return found | {name: value for name, value in balance.items() if name not in _LEFT_OUT}
+    return totals | {name: value for name, value in balance.items() if name not in _LEFT_OUT}
 
 
 def _scales(
-    a: xr.Dataset, one: Mapping[str, float], b: xr.Dataset, other: Mapping[str, float]
+    a: xr.Dataset, totals: Mapping[str, float], b: xr.Dataset, other_totals: Mapping[str, float]
 ) -> dict[str, float]:
     """Scales of the totals whose own size says little: they may be close to zero in a run that is not at rest."""
 
     def size(*names: str) -> float:
         return float(
-            np.nanmax([0.0, *(abs(run[name]) for run in (one, other) for name in names if name in run)])
+            np.nanmax(
+                [0.0, *(abs(run[name]) for run in (totals, other_totals) for name in names if name in run)]
+            )
         )
 
     by_unit = {
@@ -178,7 +184,7 @@ def _scales(
         "1": 1.0,
     }
     scales = {
-        name: max(size(name), by_unit.get(EXTREMES[name].units, 0.0)) for name in one if name in EXTREMES
+        name: max(size(name), by_unit.get(EXTREMES[name].units, 0.0)) for name in totals if name in EXTREMES
     }
     if "final_speed" in scales:
         scales["final_speed"] = size("final_speed", "min_gear_speed", "max_gear_speed")
@@ -201,9 +207,9 @@ def _largest(a: Floats, b: Floats, scale: float | None = None) -> Difference:
 
 def _of_samples(a: xr.DataArray, b: xr.DataArray) -> Difference:
     """Largest difference of a variable along any dimensions, with the labels of its place."""
-    one, other = np.asarray(a.values, dtype=float), np.asarray(b.values, dtype=float)
-    difference, place = _where_largest(one, other)
-    size = _size(one, other)
+    values, other_values = np.asarray(a.values, dtype=float), np.asarray(b.values, dtype=float)
+    difference, place = _where_largest(values, other_values)
+    size = _size(values, other_values)
     labels = dict(zip(map(str, a.dims), place, strict=True))
     return Difference(
         difference,
@@ -230,7 +236,7 @@ def _where_largest(a: Floats, b: Floats) -> tuple[float, tuple[int, ...]]:
         apart = np.abs(a - b)
     apart = np.where((np.isnan(a) & np.isnan(b)) | (a == b), 0.0, np.where(np.isnan(apart), np.inf, apart))
     place = np.unravel_index(int(np.argmax(apart)), apart.shape)
-    return float(apart[place]), tuple(int(each) for each in place)
+    return float(apart[place]), tuple(int(index) for index in place)
 
 
 def _size(a: Floats, b: Floats) -> float:
@@ -268,20 +274,22 @@ def _of_passages(
     a: xr.Dataset, b: xr.Dataset, scales: Mapping[str, float]
 ) -> Iterator[tuple[str, Difference]]:
     """Compare passages one by one, over the scales of the whole run; infinite where they are not of the same pairs."""
-    one, two = (np.stack([run["passage_pair"].values, run["passage_flank"].values]) for run in (a, b))
-    if not np.array_equal(one, two):
-        common = min(one.shape[1], two.shape[1])
-        other = (one[:, :common] != two[:, :common]).any(axis=0)
+    pairs, other_pairs = (
+        np.stack([run["passage_pair"].values, run["passage_flank"].values]) for run in (a, b)
+    )
+    if not np.array_equal(pairs, other_pairs):
+        common = min(pairs.shape[1], other_pairs.shape[1])
+        other = (pairs[:, :common] != other_pairs[:, :common]).any(axis=0)
         first = int(np.argmax(other)) if other.any() else common
         yield "passages", Difference(math.inf, math.nan, math.inf, f"passage {first}: not of the same pair")
         return
     by_unit = {"N": scales.get("largest_mesh_force", 0.0), "s": max(_duration(a), _duration(b))}
     for name, variable in PASSAGES.items():
         if name in a and name in b and name.removeprefix("passage_") not in _WHICH:
-            found = _of_samples(a[name], b[name])
+            difference = _of_samples(a[name], b[name])
             total = scales.get(name.removeprefix("passage_"), by_unit.get(variable.units, 0.0))
-            size = max(found.scale, total)
-            yield name, found._replace(scale=size, relative=_relative(found.difference, size))
+            size = max(difference.scale, total)
+            yield name, difference._replace(scale=size, relative=_relative(difference.difference, size))
 
 
 def _event_words(run: xr.Dataset, number: int) -> str:

@@ -20,11 +20,11 @@ if TYPE_CHECKING:
 @cache
 def command_help() -> dict[str, str]:
     """Help of each command, by its name; the files are read and not run, which would take longer."""
-    found = {}
+    texts = {}
     for module in pkgutil.iter_modules(__path__):
         source = (files(__name__) / f"{module.name}.py").read_text(encoding="utf-8")
-        found[module.name.replace("_", "-")] = source.split('"""')[1].strip()
-    return found
+        texts[module.name.replace("_", "-")] = source.split('"""')[1].strip()
+    return texts
 
 
 def study_of_command(name: str) -> Study:
@@ -38,10 +38,10 @@ def studies() -> dict[str, Study]:
     """Return all studies by the kinds of their files."""
     from gearidae.studies.study import Study
 
-    found: dict[str, Study] = {}
+    by_kind: dict[str, Study] = {}
     for module in pkgutil.iter_modules(__path__):
         declared = vars(import_module(f"{__name__}.{module.name}")).values()
         for study in declared:
             if isinstance(study, Study):
-                found.setdefault(study.kind, study)
-    return found
+                by_kind.setdefault(study.kind, study)
+    return by_kind

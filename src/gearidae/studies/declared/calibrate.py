@@ -114,7 +114,7 @@ def calibrate(
 
     base, how = prepared(scene, options)
     distributions = read_distributions(base, priors)
-    keys = tuple(each.key for each in distributions)
+    keys = tuple(distribution.key for distribution in distributions)
     chosen = _check(method, len(keys), points, steps, seed)
     seen = _checked(observations, base, keys)
     settings = {"method": chosen, "points": points, "steps": steps, "seed": seed}
@@ -124,9 +124,9 @@ def calibrate(
     def likelihood(values: Floats, shown: bool | SweepProgress = False) -> Floats:
         figures = predictor.figures(values, shown)
         if chosen == "grid":  # a sampler comes to places that it leaves again
-            for place, each in enumerate(seen):
-                _doubt_observation(each, figures[:, place])
-        parts = [each.log_likelihood(figures[:, place]) for place, each in enumerate(seen)]
+            for place, observation in enumerate(seen):
+                _doubt_observation(observation, figures[:, place])
+        parts = [observation.log_likelihood(figures[:, place]) for place, observation in enumerate(seen)]
         return np.asarray(np.sum(parts, axis=0), dtype=np.float64)
 
     names = list(dimension_names(keys).values())
@@ -177,11 +177,11 @@ def _where_allowed(scene: Scene, keys: tuple[str, ...], likelihood: Any) -> Any:
     """Make the likelihood of values that are not allowed zero."""
 
     def inside(values: Floats) -> Floats:
-        found = np.full(len(values), -np.inf)
+        result = np.full(len(values), -np.inf)
         allowed = np.array([_is_allowed(scene, keys, point) for point in values.tolist()])
         if allowed.any():
-            found[allowed] = likelihood(values[allowed])
-        return found
+            result[allowed] = likelihood(values[allowed])
+        return result
 
     return inside
 
@@ -210,14 +210,14 @@ def _checked(
 ) -> tuple[Observation, ...]:
     """Refuse observations that cannot be compared with runs, before anything is run."""
     seen = tuple(observations)
-    if not seen or not all(isinstance(each, Observation) for each in seen):
+    if not seen or not all(isinstance(observation, Observation) for observation in seen):
         raise SceneError("observations", len(seen), "must be a list of at least one Observation")
-    for each in seen:
-        each.check(figure_names(scene))
-        for key in each.conditions:
+    for observation in seen:
+        observation.check(figure_names(scene))
+        for key in observation.conditions:
             if key in keys:
                 raise SceneError("conditions", key, "is a key to be calibrated: it cannot be a condition too")
-        scene.replace(dict(each.conditions))
+        scene.replace(dict(observation.conditions))
     return seen
 
 
@@ -227,19 +227,23 @@ def _attributes(
     """What a posterior depends on, as attributes."""
     listed = [
         {
-            "of": each.figure,
-            "value": str(each.value),
-            "uncertainty": str(each.uncertainty),
-            "conditions": {key: str(value) for key, value in each.conditions.items()},
-            "misjudged": each.misjudged,
+            "of": observation.figure,
+            "value": str(observation.value),
+            "uncertainty": str(observation.uncertainty),
+            "conditions": {key: str(value) for key, value in observation.conditions.items()},
+            "misjudged": observation.misjudged,
         }
-        for each in seen
+        for observation in seen
     ]
-    settings_used = {"priors": {each.key: each.text for each in priors}, "observations": listed, **settings}
+    settings_used = {
+        "priors": {prior.key: prior.text for prior in priors},
+        "observations": listed,
+        **settings,
+    }
     return {
-        **provenance(scene, "calibrated", swept=tuple(each.key for each in priors)),
-        "title": f"{scene.name}: calibration of {', '.join(each.key for each in priors)}",
-        "summary": f"Posterior of {', '.join(each.key for each in priors)}, given {len(seen)} observations.",
+        **provenance(scene, "calibrated", swept=tuple(prior.key for prior in priors)),
+        "title": f"{scene.name}: calibration of {', '.join(prior.key for prior in priors)}",
+        "summary": f"Posterior of {', '.join(prior.key for prior in priors)}, given {len(seen)} observations.",
         "calibration": json.dumps(settings_used),
     }
 
@@ -305,21 +309,21 @@ def _call(
 
 def _observation(text: str) -> Observation:
     """Read ``figure=value +- uncertainty; key=value; misjudged=share``."""
-    given: dict[str, Any] = {}
+    entry: dict[str, Any] = {}
     for place, pair in enumerate(text.split(";")):
         name, equals, value = (part.strip() for part in pair.partition("="))
-        if not (name and equals and value) or name in given:
+        if not (name and equals and value) or name in entry:
             raise SceneError("--seen", text, f"must read figure=value and conditions, such as {_EXAMPLE}")
         if place == 0:
             measured, _, uncertainty = (
                 part.strip() for part in value.replace("\u00b1", "+-").partition("+-")
             )
-            given = {"of": name, "value": literal(measured)}
-            given |= {"uncertainty": literal(uncertainty)} if uncertainty else {}
+            entry = {"of": name, "value": literal(measured)}
+            entry |= {"uncertainty": literal(uncertainty)} if uncertainty else {}
         else:
-            given[name] = literal(value)
+            entry[name] = literal(value)
     try:
-        return observation_of(given)
+        return observation_of(entry)
     except SceneError as error:
         raise SceneError(f"--seen {error.key}", error.value, f"{error.allowed}; in {text!r}") from None
 
@@ -339,9 +343,11 @@ def _rows(ds: xr.Dataset) -> Rows:
     count = len(json.loads(ds.attrs["calibration"])["observations"])
     yield str(ds.attrs["title"]), "", f"{count} observation{'s' if count > 1 else ''}"
     for key in ds["parameter"].values.tolist():
-        one = ds.sel(parameter=key)
-        low, inner_low, middle, inner_high, high = (_in_unit(each, key) for each in one["quantiles"].values)
-        spread = f"{_in_unit(float(one['mean']), key)} +- {_in_unit(float(one['standard_deviation']), key)}"
+        summary = ds.sel(parameter=key)
+        low, inner_low, middle, inner_high, high = (
+            _in_unit(value, key) for value in summary["quantiles"].values
+        )
+        spread = f"{_in_unit(float(summary['mean']), key)} +- {_in_unit(float(summary['standard_deviation']), key)}"
         yield key, spread, f"median {middle}, 68 % in {inner_low} .. {inner_high}, 95 % in {low} .. {high}"
     if "autocorrelation_time" in ds.attrs:
         time, draws = float(ds.attrs["autocorrelation_time"]), ds.sizes["draw"]

@@ -119,7 +119,7 @@ def coating_map(
         lines = [_line(run_plan(plan, how, kept), width) for plan in plans]
         return _assembled(lines, numbers).assign_attrs(_attributes(scene, (_FRACTION, *keys), lines[0].attrs))
 
-    scenes = [one for plan in plans for one in plan.scenes]
+    scenes = [run for plan in plans for run in plan.scenes]
     settings = {_FRACTION: fractions, **numbers, "width": width}
     return STUDY.compute(how, plans[0].base, work, settings, origin=scene, scenes=scenes)
 
@@ -138,12 +138,12 @@ def _plans(
     return plans
 
 
-def _fractions(given: ArrayLike | None) -> list[float]:
+def _fractions(sam_fraction: ArrayLike | None) -> list[float]:
     """Fractions as a list; sweep checks their values."""
     try:
-        fractions = np.atleast_1d(numbers_of(FRACTIONS if given is None else given, "1"))
+        fractions = np.atleast_1d(numbers_of(FRACTIONS if sam_fraction is None else sam_fraction, "1"))
     except (TypeError, ValueError):
-        raise SceneError("sam_fraction", given, "must be a list of numbers") from None
+        raise SceneError("sam_fraction", sam_fraction, "must be a list of numbers") from None
     if fractions.ndim != 1:
         raise SceneError("sam_fraction", f"(shape {fractions.shape})", "must be a list of numbers")
     return [float(value) for value in fractions]
@@ -279,14 +279,14 @@ def _rows(ds: xr.Dataset) -> Rows:
         held = ", ".join(f"{dim} = {line[dim].item():g}" for dim in further)
         yield held or "Frequency of the first impact response", "", ""
         for place in picked:
-            one = line.isel(sam_fraction=int(place))
-            value, spread = float(one["characteristic_frequency"]), float(one["uncertainty"])
+            point = line.isel(sam_fraction=int(place))
+            value, spread = float(point["characteristic_frequency"]), float(point["uncertainty"])
             text = f"{value:.0f} +- {spread:.0f} Hz" if np.isfinite(value) else "-"
-            slowest = float(one["min_gear_speed"])
+            slowest = float(point["min_gear_speed"])
             remark = "" if slowest > 0.0 else "the gear stops within the run"
             if np.isnan(slowest):
                 remark = "its run could not be finished"
-            yield f"SAM {100 * float(one['sam_fraction']):g} %", text, remark
+            yield f"SAM {100 * float(point['sam_fraction']):g} %", text, remark
 
 
 STUDY = Study(

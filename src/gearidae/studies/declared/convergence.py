@@ -163,15 +163,16 @@ def _dataset(
     scene: Scene, runs: xr.Dataset, names: Sequence[str], ladder: Floats, target: float
 ) -> xr.Dataset:
     def of(name: str) -> Floats:
-        each = runs[name]
+        variable = runs[name]
         return _by_step(
-            np.asarray((each.isel(time=-1) if "time" in each.dims else each).values, float), len(ladder)
+            np.asarray((variable.isel(time=-1) if "time" in variable.dims else variable).values, float),
+            len(ladder),
         )
 
     known = by_name()
     values = np.stack([of(name) for name in names])
     times = np.median(of("wall_time"), axis=1)
-    judged = [judge(each, ladder, target) for each in values]
+    judged = [judge(row, ladder, target) for row in values]
     columns: dict[str, Any] = {
         "figure": np.array(names),
         "rtol": ladder,
@@ -182,7 +183,7 @@ def _dataset(
         "steps": np.median(of("steps"), axis=1),
         "unfinished": _by_step(runs["status"].values != "finished", len(ladder)).sum(axis=1),
     }
-    columns |= {name: np.array([each[name] for each in judged]) for name in judged[0]}
+    columns |= {name: np.array([verdict[name] for verdict in judged]) for name in judged[0]}
     columns["time_to_take"] = np.array(
         [math.nan if math.isnan(rtol) else times[ladder == rtol][0] for rtol in columns["rtol_to_take"]]
     )
@@ -211,7 +212,7 @@ def judge(values: Floats, ladder: Floats, target: float) -> dict[str, Any]:
         The variables of `convergence` that follow from them.
     """
     steps, neighbours = len(ladder), len(_TOLERANCES)
-    found = {
+    result = {
         "reference": math.nan,
         "error": np.full(steps, math.nan),
         "scatter": np.full(steps, math.nan),
@@ -223,15 +224,15 @@ def judge(values: Floats, ladder: Floats, target: float) -> dict[str, Any]:
     }
     finite = np.isfinite(values)
     if not finite[-1].any():
-        return found
+        return result
     if not finite[-2:].all():  # some of the neighbours stick, say, and others do not
-        return found | {"verdict": _CHAOTIC}
+        return result | {"verdict": _CHAOTIC}
     reference = float(values[-1].mean())
     size = abs(reference) or float(np.nanmax(np.abs(values))) or 1.0
     means, scatter = values.mean(axis=1), values.std(axis=1, ddof=1) / size
     error = np.sqrt(((values - reference) ** 2).mean(axis=1)) / size
     error[-1] = scatter[-1] + _REMAINING * abs(means[-1] - means[-2]) / size
-    found |= {
+    result |= {
         "reference": reference,
         "error": error,
         "scatter": scatter,
@@ -241,11 +242,11 @@ def judge(values: Floats, ladder: Floats, target: float) -> dict[str, Any]:
     within = np.flatnonzero(~(error <= target))
     first = 0 if not within.size else int(within[-1]) + 1
     if first < steps:
-        return found | {"verdict": _CONVERGES, "rtol_to_take": float(ladder[first])}
+        return result | {"verdict": _CONVERGES, "rtol_to_take": float(ladder[first])}
     if scatter[-1] <= target or scatter[-1] <= _FALLS * scatter[-3]:
-        return found | {"verdict": _NOT_YET}
+        return result | {"verdict": _NOT_YET}
     spread = float(values[-2:].std(ddof=1)) / size
-    return found | {"verdict": _CHAOTIC, "starts": math.ceil((spread / target) ** 2)}
+    return result | {"verdict": _CHAOTIC, "starts": math.ceil((spread / target) ** 2)}
 
 
 def _call(
@@ -270,21 +271,18 @@ def _sentence(ds: xr.Dataset) -> str:
     return f"To {100.0 * float(ds.attrs['target']):.3g} %: {'; '.join(parts)}."
 
 
-def _verdict(one: xr.Dataset) -> str:
-    verdict, starts = str(one["verdict"].item()), float(one["starts"])
+def _verdict(figure: xr.Dataset) -> str:
+    verdict, starts = str(figure["verdict"].item()), float(figure["starts"])
     if verdict == _CONVERGES:
-        return (
-            f"converges at rtol {float(one['rtol_to_take']):g} ({in_words(float(one['time_to_take']))} a run)"
-        )
+        return f"converges at rtol {float(figure['rtol_to_take']):g} ({in_words(float(figure['time_to_take']))} a run)"
     if verdict == _NONE:
         return "has no value in these runs"
     if verdict == _NOT_YET:
-        return (
-            f"has not converged at rtol {float(one['rtol'][-1]):g}: its error is {_percent(one['error'][-1])}"
-        )
+        return f"has not converged at rtol {float(figure['rtol'][-1]):g}: its error is {_percent(figure['error'][-1])}"
     if math.isnan(starts):
         return "is chaotic: neighbouring runs have a value or none"
-    return f"is chaotic: it scatters by {_percent(one['scatter'][-1])}, and the mean of {starts:.0f} starts is needed"
+    scatter = _percent(figure["scatter"][-1])
+    return f"is chaotic: it scatters by {scatter}, and the mean of {starts:.0f} starts is needed"
 
 
 def _percent(share: xr.DataArray) -> str:
@@ -294,11 +292,15 @@ def _percent(share: xr.DataArray) -> str:
 def _rows(ds: xr.Dataset) -> Rows:
     """Error, scatter and time at each tolerance."""
     for name in ds["figure"].values.tolist():
-        one = ds.sel(figure=name)
-        known, unit = bool(one["error"].notnull().any()), str(one["unit"].item()).removeprefix("1")
-        yield f"{name}: {float(one['reference']):.6g} {unit}".rstrip() if known else name, "", _verdict(one)
+        figure = ds.sel(figure=name)
+        known, unit = bool(figure["error"].notnull().any()), str(figure["unit"].item()).removeprefix("1")
+        yield (
+            f"{name}: {float(figure['reference']):.6g} {unit}".rstrip() if known else name,
+            "",
+            _verdict(figure),
+        )
         for number, rtol in enumerate(ds["rtol"].values.tolist() if known else ()):
-            at = one.isel(rtol=number)
+            at = figure.isel(rtol=number)
             by_rtol, by_gap = (_percent(at[f"scatter_of_{name}"]) for name in ("tolerance", "gap"))
             scatter = f"scatter {by_rtol} by tolerance, {by_gap} by gap"
             yield (
@@ -335,16 +337,16 @@ def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     STUDY.require(ds)
     ax = new_axes(ax, height=3.8)
     for number, name in enumerate(ds["figure"].values.tolist()):
-        one = ds.sel(figure=name)
-        converges = one["verdict"].item() == _CONVERGES
+        figure = ds.sel(figure=name)
+        converges = figure["verdict"].item() == _CONVERGES
         ax.plot(
-            one["wall_time"].values,
-            100.0 * one["error"].where(one["error"] > 0.0).values,
+            figure["wall_time"].values,
+            100.0 * figure["error"].where(figure["error"] > 0.0).values,
             color=COLOURS[number % len(COLOURS)],
             marker="." if converges else "x",
             linestyle="-" if converges else "--",
             linewidth=1.2,
-            label=f"{name}: {one['verdict'].item()}",
+            label=f"{name}: {figure['verdict'].item()}",
         )
     ax.axhline(100.0 * float(ds.attrs["target"]), color="0.3", linewidth=0.8, linestyle=":", label="target")
     ax.set_xscale("log")

@@ -126,14 +126,16 @@ def ensemble(
     base, how = prepared(scene, options, samples="off")
     check_design(size, design, seed, indices=of is not None)
     _check_figure(base, of)
-    own = without_seeds(base, vary)
-    seeded = own is not vary
-    if seeded and of is not None and not own:
+    varied = without_seeds(base, vary)
+    seeded = varied is not vary
+    if seeded and of is not None and not varied:
         raise SceneError("of", of, f"needs keys beside {SEED}, which has no index")
-    distributions = read_distributions(base, own) if own or not seeded else ()
+    distributions = read_distributions(base, varied) if varied or not seeded else ()
     drawn = (plain_design if of is None else pick_freeze_design)(distributions, int(size), design, int(seed))
     texts = names_of(distributions)
-    values: dict[str, Any] = {each.key: drawn.values[:, number] for number, each in enumerate(distributions)}
+    values: dict[str, Any] = {
+        distribution.key: drawn.values[:, number] for number, distribution in enumerate(distributions)
+    }
     if seeded:
         values[SEED] = seed_numbers(base, drawn)
     words = {**texts, **({SEED: SEEDS} if seeded else {})}
@@ -176,16 +178,16 @@ def _with_design(
     if of is None:
         return ds
     figures = ds[of].values.astype(np.float64)
-    found = indices_of(figures, len(keys), seed=seed)
+    indices = indices_of(figures, len(keys), seed=seed)
     if none := int(np.isnan(figures).sum()):
         log.warning(
             "%d of %d members have no %s: the indices rest on %d rows in which all members have one%s",
-            none, figures.size, of, found.rows, f", of {FEWEST} that they need" if found.rows < FEWEST else "",
+            none, figures.size, of, indices.rows, f", of {FEWEST} that they need" if indices.rows < FEWEST else "",
         )  # fmt: skip
-    values = {name: getattr(found, name) for name in found._fields if name in STUDY.columns}
+    values = {name: getattr(indices, name) for name in indices._fields if name in STUDY.columns}
     values |= {"matrix": drawn.matrix, "row": drawn.row, "parameter": np.array(keys)}
     ds = ds.merge(STUDY.dataset(values, {}, of=of)).set_coords(["matrix", "row"])
-    return ds.assign_attrs(index_of=of, index_rows=found.rows)
+    return ds.assign_attrs(index_of=of, index_rows=indices.rows)
 
 
 def _titles(scene: Scene, texts: Mapping[str, str], members: int) -> dict[str, str]:
@@ -233,16 +235,16 @@ def _call(
 def _sentence(ds: xr.Dataset) -> str:
     if not np.isfinite(ds["sticks"]).any():
         return f"None of {ds.sizes['member']} members has been finished."
-    found = sticking_probability(ds)
-    stuck, members = int(found["stuck"]), int(found["members"])
+    estimate = sticking_probability(ds)
+    stuck, members = int(estimate["stuck"]), int(estimate["members"])
     unfinished = int(np.isnan(ds["sticks"].values).sum())
     rest = f"; {unfinished} of {ds.sizes['member']} are unfinished and do not count" if unfinished else ""
-    return f"{stuck} of {members} members stick: probability of sticking {_probability(found)}{rest}."
+    return f"{stuck} of {members} members stick: probability of sticking {_probability(estimate)}{rest}."
 
 
-def _probability(found: xr.Dataset) -> str:
-    low, high = float(found["low"]), float(found["high"])
-    return f"{float(found['probability']):.3g}, 95 % between {low:.3g} and {high:.3g}"
+def _probability(estimate: xr.Dataset) -> str:
+    low, high = float(estimate["low"]), float(estimate["high"])
+    return f"{float(estimate['probability']):.3g}, 95 % between {low:.3g} and {high:.3g}"
 
 
 def _rows(ds: xr.Dataset) -> Rows:
@@ -258,8 +260,8 @@ def _rows(ds: xr.Dataset) -> Rows:
             f"first order, {ds.attrs['index_rows']} rows",
         )
         for key in ds["parameter"].values:
-            one = ds.sel(parameter=key)
-            yield str(key), _uncertain(one, "total_order"), _uncertain(one, "first_order")
+            indices = ds.sel(parameter=key)
+            yield str(key), _uncertain(indices, "total_order"), _uncertain(indices, "first_order")
     yield from count_rows(ds["verdict"])
     if has_seeds(ds):
         yield from _mean_rows(ds)
@@ -287,9 +289,9 @@ def _in_words(value: float, unit: str) -> str:
     return f"{value:.4g} rad/s" if unit == "rad s-1" else with_prefix(value, unit, 4)
 
 
-def _uncertain(one: xr.Dataset, name: str) -> str:
-    value = float(one[name])
-    return "none" if math.isnan(value) else f"{value:.3f} +- {float(one[f'{name}_uncertainty']):.3f}"
+def _uncertain(indices: xr.Dataset, name: str) -> str:
+    value = float(indices[name])
+    return "none" if math.isnan(value) else f"{value:.3f} +- {float(indices[f'{name}_uncertainty']):.3f}"
 
 
 def _mean_rows(ds: xr.Dataset) -> Rows:
@@ -314,14 +316,14 @@ def _mean_rows(ds: xr.Dataset) -> Rows:
                 "1",
             )
     for name, (values, unit) in figures.items():
-        found = values[np.isfinite(values)]
-        if found.size > 1:
-            spread = float(np.std(found, ddof=1))
-            low, high = np.quantile(found, (0.05, 0.95))
+        finite = values[np.isfinite(values)]
+        if finite.size > 1:
+            spread = float(np.std(finite, ddof=1))
+            low, high = np.quantile(finite, (0.05, 0.95))
             rest = _of_members(values)
             yield (
                 name,
-                _with_error(float(found.mean()), spread / math.sqrt(found.size), unit),
+                _with_error(float(finite.mean()), spread / math.sqrt(finite.size), unit),
                 f"standard deviation of one gear {spread:.2g}, 90 % between {low:.4g} and {high:.4g}" + rest,
             )
 
@@ -337,13 +339,13 @@ def _with_error(mean: float, error: float, unit: str) -> str:
 
 def _index_columns() -> dict[str, Column]:
     """Sobol' indices and their uncertainties."""
-    found = {}
+    columns = {}
     for name, words in (("first_order", " alone"), ("total_order", ", interactions included")):
-        found[name] = Column(
+        columns[name] = Column(
             ("parameter",), "1", f"share of the variance of {{of}} that the key makes{words}"
         )
-        found[f"{name}_uncertainty"] = Column(("parameter",), "1", f"standard uncertainty of {name}")
-    return found
+        columns[f"{name}_uncertainty"] = Column(("parameter",), "1", f"standard uncertainty of {name}")
+    return columns
 
 
 STUDY = Study(

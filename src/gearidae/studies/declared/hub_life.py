@@ -47,9 +47,9 @@ def _call(
     return Call((), options, f"{len(parts) or 1} frequencies, until what joints slide in a turn is steady")
 
 
-def _first(one: xr.Dataset) -> str:
+def _first(point: xr.Dataset) -> str:
     """Name the joint that fails first at a frequency, in most of the devices."""
-    return str(one["joint"].values[int(np.argmax(one["first_share"].values))])
+    return str(point["joint"].values[int(np.argmax(point["first_share"].values))])
 
 
 def _answered(ds: xr.Dataset) -> xr.Dataset:
@@ -86,28 +86,28 @@ def _rows(ds: xr.Dataset) -> Rows:
     """Lives of the joints at each frequency, the first of them, and what they have worn."""
     drawn = ds.attrs["spread"] > 1.0
     for number in range(ds.sizes["frequency"]):
-        one = ds.isel(frequency=number)
+        point = ds.isel(frequency=number)
         yield (
-            f"Lives at {float(one['frequency']):.4g} turns/s of the pinion",
+            f"Lives at {float(point['frequency']):.4g} turns/s of the pinion",
             "turns",
             "hours, sliding in a turn",
         )
-        if str(one["status"].values) != "finished":
-            yield "no answer", "-", str(one["message"].values)
+        if str(point["status"].values) != "finished":
+            yield "no answer", "-", str(point["message"].values)
             continue
-        for place, name in enumerate(one["joint"].values.tolist()):
-            joint = one.isel(joint=place)
+        for place, name in enumerate(point["joint"].values.tolist()):
+            joint = point.isel(joint=place)
             more = f"{float(joint['hours']):.3g} h, {float(joint['sliding']):.4g} N m"
             if drawn:
                 low, _, high = joint["turns_quantile"].values
                 share = 100.0 * float(joint["first_share"])
                 more += f"; 80 % of {low:.3g} to {high:.3g} turns, the first in {share:.3g} % of the devices"
             if "worn_depth" in joint:
-                depth, play = (float(joint[each]) for each in ("worn_depth", "added_backlash"))
+                depth, play = (float(joint[field]) for field in ("worn_depth", "added_backlash"))
                 more += f"; worn by {with_prefix(depth, 'm')} when the life is over"
                 more += f", which adds {with_prefix(play, 'm')} of backlash at most" if play > 0.0 else ""
             yield name, f"{float(joint['turns']):.3g}", more
-        yield "first to fail", _first(one), f"blocks of turns differ by {float(one['drift']):.2g}"
+        yield "first to fail", _first(point), f"blocks of turns differ by {float(point['drift']):.2g}"
     k = f"{float(ds.attrs['coefficient']):.3g} m^2/N"
     yield "wear coefficient", k, f"spread {ds.attrs['spread']:g}; fitted: lives are as good as this number"
 

@@ -75,12 +75,12 @@ def _rows(ds: xr.Dataset) -> Rows:
     """Coverage, speed and frequency at the steps of the life."""
     yield "Passages of each tooth", "coverage", "mean speed, smallest speed, characteristic frequency"
     for number in range(ds.sizes["passages"]):
-        one = ds.isel(passages=number)
-        shares = ", ".join(f"{round(100.0 * share, 6):.4g} %" for share in one["coverage"].values)
-        speed = f"{float(one['mean_gear_speed']):.4g} rad/s, {float(one['min_gear_speed']):.4g} rad/s"
-        rings = float(one["characteristic_frequency"]) if "characteristic_frequency" in one else math.nan
+        state = ds.isel(passages=number)
+        shares = ", ".join(f"{round(100.0 * share, 6):.4g} %" for share in state["coverage"].values)
+        speed = f"{float(state['mean_gear_speed']):.4g} rad/s, {float(state['min_gear_speed']):.4g} rad/s"
+        rings = float(state["characteristic_frequency"]) if "characteristic_frequency" in state else math.nan
         more = "" if math.isnan(rings) else f", {rings:.4g} Hz"
-        yield f"{float(one['passages']):.4g}", shares, f"{one['verdict'].values!s}, {speed}{more}"
+        yield f"{float(state['passages']):.4g}", shares, f"{state['verdict'].values!s}, {speed}{more}"
     counted = {name: ds.attrs.get(f"mesh_cycles_{name}") for name in ("jumped", "simulated")}
     if None not in counted.values():
         jumped = f"{float(counted['jumped']):.4g} jumped, {ds.attrs['windows']} windows"  # type: ignore[arg-type]
@@ -185,21 +185,21 @@ def coverage_along_flank(ds: xr.Dataset, ax: Axes | None = None, *, tooth: int |
     from gearidae.drawing.style import new_axes
 
     _require(ds, "coverage_by_place")
-    found = ds["coverage_by_place"].isel(side=0)
-    if tooth is not None and tooth not in found["tooth"].values:
-        raise SceneError("tooth", tooth, f"must lie in 0..{found.sizes['tooth'] - 1}")
-    found = found.mean("tooth") if tooth is None else found.sel(tooth=tooth)
+    coverage = ds["coverage_by_place"].isel(side=0)
+    if tooth is not None and tooth not in coverage["tooth"].values:
+        raise SceneError("tooth", tooth, f"must lie in 0..{coverage.sizes['tooth'] - 1}")
+    coverage = coverage.mean("tooth") if tooth is None else coverage.sel(tooth=tooth)
     ax = new_axes(ax, height=3.8)
-    chosen = np.unique(np.linspace(0, found.sizes["passages"] - 1, 6).round().astype(int))
+    chosen = np.unique(np.linspace(0, coverage.sizes["passages"] - 1, 6).round().astype(int))
     for rank, number in enumerate(chosen):
-        one = found.isel(passages=int(number))
+        curve = coverage.isel(passages=int(number))
         shade = str(0.75 * (1.0 - rank / max(len(chosen) - 1, 1)))
         ax.plot(
-            1e6 * found["place"].values,
-            100.0 * one.values,
+            1e6 * coverage["place"].values,
+            100.0 * curve.values,
             color=shade,
             marker=".",
-            label=f"{float(one['passages']):.3g} passages",
+            label=f"{float(curve['passages']):.3g} passages",
         )
     ax.set_xlabel("place along the path of contact [µm]")
     ax.set_ylabel("coverage [%]")
@@ -216,13 +216,13 @@ def _require(ds: xr.Dataset, name: str) -> None:
 
 def _exposure_columns() -> dict[str, Column]:
     """Exposures of a passage, and their sums."""
-    found = {}
+    columns = {}
     for name, (unit, words) in _EXPOSURES.items():
-        found[f"passage_{name}"] = Column(_FLANKS, unit, words, required=False)
+        columns[f"passage_{name}"] = Column(_FLANKS, unit, words, required=False)
         if name != "pressure":
             summed = words.replace(" in a passage", "").replace("made ", "made so far ")
-            found[f"total_{name}"] = Column(_FLANKS, unit, f"{summed}, since the beginning", required=False)
-    return found
+            columns[f"total_{name}"] = Column(_FLANKS, unit, f"{summed}, since the beginning", required=False)
+    return columns
 
 
 STUDY = Study(

@@ -84,8 +84,8 @@ def _rows(ds: xr.Dataset) -> Rows:
 
 
 def _surviving_rows(ds: xr.Dataset) -> Rows:
-    found = surviving_share(ds)
-    passages, shares = found["passages"].values, found["share"].values
+    surviving = surviving_share(ds)
+    passages, shares = surviving["passages"].values, surviving["share"].values
     followed = max(passages[-1], np.nanmax(ds["passages_turning"].values))
     for share in _SHARES:
         fallen = np.flatnonzero(shares <= share)
@@ -138,7 +138,7 @@ def surviving_share(ds: xr.Dataset, *, confidence: float = 0.95) -> xr.Dataset:
     known = np.isin(estimate.quantiles, ends)
     at = np.append(0.0, estimate.quantiles[known])
     share = np.append(1.0, estimate.probabilities[known])
-    low, high = (np.append(np.nan, each.probabilities[known]) for each in (interval.low, interval.high))
+    low, high = (np.append(np.nan, bound.probabilities[known]) for bound in (interval.low, interval.high))
     followed = (np.append(ends, turning) >= at[:, None]).sum(axis=1)
     percent = f"{100.0 * confidence:g} %"
     return xr.Dataset(
@@ -179,13 +179,13 @@ def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     """
     from gearidae.drawing.style import POSITIVE, new_axes, tidy
 
-    found = surviving_share(ds)
+    surviving = surviving_share(ds)
     ax = new_axes(ax, height=3.8)
     turning = ds["passages_turning"].values[ds["sticks"].values == 0.0]
-    end = max([float(found["passages"][-1]), *turning.tolist()])
-    at = np.append(found["passages"].values, end)
+    end = max([float(surviving["passages"][-1]), *turning.tolist()])
+    at = np.append(surviving["passages"].values, end)
     share, low, high = (
-        np.append(found[name].values, found[name].values[-1]) for name in ("share", "low", "high")
+        np.append(surviving[name].values, surviving[name].values[-1]) for name in ("share", "low", "high")
     )
     ax.fill_between(at, low, high, step="post", color=POSITIVE, alpha=0.25, linewidth=0, label="95 % band")
     ax.step(at, share, where="post", color=POSITIVE, linewidth=1.4, label="still turn")

@@ -46,7 +46,7 @@ _OUTCOME = {
     "long_name": "what the gear does",
     "units": "1",
     "flag_values": np.array(list(Outcome), dtype=np.int8),
-    "flag_meanings": " ".join(each.name.lower() for each in Outcome),
+    "flag_meanings": " ".join(word.name.lower() for word in Outcome),
     "comment": "a gear that sticks may have crossed the backlash before: flank_changes says how often",
 }
 

@@ -82,13 +82,13 @@ def pull_off(
     pieces = [numbers[first : first + _PIECE] for first in range(0, len(numbers), _PIECE)]
 
     def work(_: KeptRuns | None) -> xr.Dataset:
-        found: list[PullOff] = []
+        results: list[PullOff] = []
         with sweep_progress(how.progress, len(numbers)) as report, how.computing(len(pieces)) as computing:
             count = len(pieces)
             for part in side_by_side(computing, _part, [scene] * count, pieces, [force] * count):
-                found += part
-                report(float(len(found)), len(numbers))
-        return _dataset(scene, numbers, force, found)
+                results += part
+                report(float(len(results)), len(numbers))
+        return _dataset(scene, numbers, force, results)
 
     return STUDY.compute(how, scene, work, [numbers, force])
 
@@ -101,12 +101,14 @@ def _part(scene: Scene, seeds: Sequence[int], load: float) -> list[PullOff]:
     contact, arc = pair_contact(scene), 0.0
     if scene.gears is not None:
         arc = float(flank_arc(scene.geometry, scene.geometry.approach))
-    return [DrawnContact(scene, one, contact, arc).pull_off(load) for one in first_flanks(scene, seeds)]
+    return [DrawnContact(scene, flank, contact, arc).pull_off(load) for flank in first_flanks(scene, seeds)]
 
 
-def _dataset(scene: Scene, seeds: Sequence[int], load: float, found: Sequence[PullOff]) -> xr.Dataset:
+def _dataset(scene: Scene, seeds: Sequence[int], load: float, results: Sequence[PullOff]) -> xr.Dataset:
     columns = zip(
-        ("pull_off", "asperities_joined", "asperities_holding", "gap"), zip(*found, strict=True), strict=True
+        ("pull_off", "asperities_joined", "asperities_holding", "gap"),
+        zip(*results, strict=True),
+        strict=True,
     )
     values = {name: np.array(column, dtype=np.float64) for name, column in columns}
     attributes = {
@@ -118,34 +120,34 @@ def _dataset(scene: Scene, seeds: Sequence[int], load: float, found: Sequence[Pu
     return STUDY.dataset({"seed": np.array(seeds), **values}, attributes)
 
 
-def _seeds(scene: Scene, given: int | Sequence[int]) -> list[int]:
+def _seeds(scene: Scene, asked: int | Sequence[int]) -> list[int]:
     """Numbers of the surfaces."""
     first = scene.contact.seed
     try:
-        numbers: Sequence[int] = given  # type: ignore[assignment]
-        if isinstance(given, int | np.integer) and not isinstance(given, bool):
-            numbers = range(first, first + int(given))
+        numbers: Sequence[int] = asked  # type: ignore[assignment]
+        if isinstance(asked, int | np.integer) and not isinstance(asked, bool):
+            numbers = range(first, first + int(asked))
         seeds = [int(number) for number in numbers if float(number).is_integer()]
         right = len(seeds) == len(numbers) and min(seeds) >= 0 and len(seeds) <= _MOST
     except (TypeError, ValueError):
         right = False
     if not right:
         raise SceneError(
-            "seeds", str(given)[:60], f"must be a number from 1 to {_MOST}, or whole numbers of 0 or more"
+            "seeds", str(asked)[:60], f"must be a number from 1 to {_MOST}, or whole numbers of 0 or more"
         )
     return seeds
 
 
-def _load(scene: Scene, given: float | None) -> float:
-    if given is None and isinstance(scene, GearScene):
+def _load(scene: Scene, load: float | None) -> float:
+    if load is None and isinstance(scene, GearScene):
         from gearidae.runs.estimates import mean_force
 
-        given = mean_force(scene)
-    if given is None or not 0.0 < given < np.inf:
+        load = mean_force(scene)
+    if load is None or not 0.0 < load < np.inf:
         raise SceneError(
-            "load", given, "must be a positive force in N: the scene has no mean torque that presses a pair"
+            "load", load, "must be a positive force in N: the scene has no mean torque that presses a pair"
         )
-    return float(given)
+    return float(load)
 
 
 def _call(
@@ -165,9 +167,9 @@ def _sentence(ds: xr.Dataset) -> str:
 
 
 def _quantiles(values: xr.DataArray) -> list[str]:
-    found = np.quantile(values.values, (0.1, 0.5, 0.9))
+    quantiles = np.quantile(values.values, (0.1, 0.5, 0.9))
     unit = str(values.attrs["units"])
-    return [f"{one:.3g}" if unit == "1" else with_prefix(float(one), unit, 3) for one in found]
+    return [f"{value:.3g}" if unit == "1" else with_prefix(float(value), unit, 3) for value in quantiles]
 
 
 def _rows(ds: xr.Dataset) -> Rows:

@@ -75,8 +75,8 @@ def _sentence(ds: xr.Dataset) -> str:
     starts = f"A gear at rest starts at {with_prefix(torque, 'N m', 4)} on the pinion"
     if not drive > 0.0:
         return f"{starts}."
-    own = "starts it" if drive >= torque else "does not start it"
-    return f"{starts}: the drive's own {with_prefix(drive, 'N m', 4)} {own}."
+    verdict = "starts it" if drive >= torque else "does not start it"
+    return f"{starts}: the drive's own {with_prefix(drive, 'N m', 4)} {verdict}."
 
 
 def _simulated(ds: xr.Dataset) -> xr.DataArray:
@@ -89,19 +89,19 @@ def _rows(ds: xr.Dataset) -> Rows:
     """Torques at each coverage."""
     yield "Starting torque on the pinion", "simulated", "sticks at, and without inertia"
     for number in range(ds.sizes["sam_fraction"]):
-        one = ds.isel(sam_fraction=number)
+        point = ds.isel(sam_fraction=number)
         turns, sticks, static = (
-            with_prefix(float(one[name]), "N m", 4)
+            with_prefix(float(point[name]), "N m", 4)
             for name in ("simulated_torque", "simulated_stuck", "static_torque")
         )
         words = f"sticks at {sticks}, static {static}"
-        if np.isnan(one["simulated_torque"]):
+        if np.isnan(point["simulated_torque"]):
             turns, words = "-", f"no simulated torque, static {static}"
-            message = str(one["message"].values) if "message" in one else ""
+            message = str(point["message"].values) if "message" in point else ""
             words += f": {message}" if message else ""
-        yield f"SAM {100.0 * float(one['sam_fraction']):.4g} %", turns, words
-        if "parts" in one:
-            yield from _parts(one["parts"], "of the static torque")
+        yield f"SAM {100.0 * float(point['sam_fraction']):.4g} %", turns, words
+        if "parts" in point:
+            yield from _parts(point["parts"], "of the static torque")
 
 
 def _parts(parts: xr.DataArray, words: str) -> Rows:
@@ -131,51 +131,57 @@ def _gears_rows(ds: xr.Dataset) -> Rows:
     """Quantiles, gears that did not start, chance at the drive's own torque, and rate, at each coverage."""
     drive = float(ds.attrs.get("drive_torque", math.nan))
     for number in range(ds.sizes["sam_fraction"]):
-        one = ds.isel(sam_fraction=number)
-        count = _followed(one)
-        yield f"Starting torque of {count} gears, SAM {100.0 * float(one['sam_fraction']):.4g} %", "", ""
-        for share in one["quantile"].values.tolist():
+        point = ds.isel(sam_fraction=number)
+        count = _followed(point)
+        yield f"Starting torque of {count} gears, SAM {100.0 * float(point['sam_fraction']):.4g} %", "", ""
+        for share in point["quantile"].values.tolist():
             below = f"{100.0 * share:.0f} % of the gears start below"
-            yield below, _torque(one["quantiles"].sel(quantile=share), one), ""
-        if "parts" in one and np.isfinite(one["parts"]).any():
-            yield from _parts(one["parts"].median("seed", skipna=True), "median of the gears that start")
-        if failed := one.sizes["seed"] - count:
-            yield "left out", f"{failed} of {one.sizes['seed']}", "their runs could not be finished"
-            yield from _failures(one)
-        rests = round(float(one["not_started"]) * count)
-        yield "not started", f"{rests} of {count}", f"when the ramp ended at {_torque(one['ramp_end'], one)}"
+            yield below, _torque(point["quantiles"].sel(quantile=share), point), ""
+        if "parts" in point and np.isfinite(point["parts"]).any():
+            yield from _parts(point["parts"].median("seed", skipna=True), "median of the gears that start")
+        if failed := point.sizes["seed"] - count:
+            yield "left out", f"{failed} of {point.sizes['seed']}", "their runs could not be finished"
+            yield from _failures(point)
+        rests = round(float(point["not_started"]) * count)
+        yield (
+            "not started",
+            f"{rests} of {count}",
+            f"when the ramp ended at {_torque(point['ramp_end'], point)}",
+        )
         if drive > 0.0:
-            started = int(one["starts"].sum())
-            own = f"turn one pitch at the drive's own {with_prefix(drive, 'N m', 4)}, there at once"
-            yield "chance of starting", f"{started / count:.3g}", f"{started} of {count} {own}"
-        change = float(one["median_change"])
+            started = int(point["starts"].sum())
+            turned = f"turn one pitch at the drive's own {with_prefix(drive, 'N m', 4)}, there at once"
+            yield "chance of starting", f"{started / count:.3g}", f"{started} of {count} {turned}"
+        change = float(point["median_change"])
         words = f"twice this rate changes the median by {100.0 * change:.2g} %"
         words += "" if change < SLOW_ENOUGH else ": not slow enough to rely on it"
-        yield "rate of the torque", f"{with_prefix(1e-3 * float(one['rate']), 'N m', 3)} per ms", words
+        yield "rate of the torque", f"{with_prefix(1e-3 * float(point['rate']), 'N m', 3)} per ms", words
         yield (
             "damping of the mesh",
-            f"{float(one['damping']):.3g} N s/m",
+            f"{float(point['damping']):.3g} N s/m",
             "at least 3 % of critical in this study",
         )
 
 
-def _failures(one: xr.Dataset) -> Rows:
+def _failures(point: xr.Dataset) -> Rows:
     """Gears that are left out, and why."""
-    if "message" in one:
-        for seed, message in zip(one["seed"].values.tolist(), one["message"].values.tolist(), strict=True):
+    if "message" in point:
+        for seed, message in zip(
+            point["seed"].values.tolist(), point["message"].values.tolist(), strict=True
+        ):
             if message:
                 yield f"gear of seed {seed}", "-", message
 
 
-def _followed(one: xr.Dataset) -> int:
+def _followed(point: xr.Dataset) -> int:
     """Gears whose runs could be finished."""
-    return one.sizes["seed"] - (int(one["failed"].sum()) if "failed" in one else 0)
+    return point.sizes["seed"] - (int(point["failed"].sum()) if "failed" in point else 0)
 
 
-def _torque(value: xr.DataArray, one: xr.Dataset) -> str:
+def _torque(value: xr.DataArray, point: xr.Dataset) -> str:
     if np.isfinite(value):
         return with_prefix(float(value), "N m", 3)
-    return f"more than {with_prefix(float(one['ramp_end']), 'N m', 3)}"
+    return f"more than {with_prefix(float(point['ramp_end']), 'N m', 3)}"
 
 
 def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
@@ -274,8 +280,8 @@ def picture_of_gears(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     ax = new_axes(ax, height=3.8)
     count = ds.sizes["seed"]
     for number in range(ds.sizes["sam_fraction"]):
-        one = ds["starting_torque"].isel(sam_fraction=number)
-        torque = np.sort(one.values[np.isfinite(one.values)])
+        torques = ds["starting_torque"].isel(sam_fraction=number)
+        torque = np.sort(torques.values[np.isfinite(torques.values)])
         ax.step(
             torque,
             np.arange(1, torque.size + 1) / count,
@@ -284,7 +290,7 @@ def picture_of_gears(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
             linestyle=LINE_STYLES[number % len(LINE_STYLES)],
             marker=".",
             linewidth=1.2,
-            label=f"SAM {100.0 * float(one['sam_fraction']):.4g} %",
+            label=f"SAM {100.0 * float(torques['sam_fraction']):.4g} %",
         )
     ax.set_xscale("log")
     ax.xaxis.set_major_formatter(EngFormatter("N m"))

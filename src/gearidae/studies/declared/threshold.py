@@ -138,11 +138,11 @@ class _Pool:
 
     def run(self, values: Sequence[float]) -> bool:
         """Run the values that have not been run; whether there were any. Runs that fail are named and left out."""
-        done = {each.value for each in self.runs}
+        done = {earlier.value for earlier in self.runs}
         todo = sorted({value for value in values if value not in done})
         scenes = [self.scene.replace({self.over: value}) for value in todo]
-        found = self.compute(run_until, scenes, self.exits)
-        for value, (solution, _) in zip(todo, found, strict=True):
+        solved = self.compute(run_until, scenes, self.exits)
+        for value, (solution, _) in zip(todo, solved, strict=True):
             run = ThresholdRun.of(value, solution)
             if run.failure is None:
                 _refuse_short(self.scene, run, self.exits)
@@ -213,7 +213,7 @@ def _dataset(
     """Make the dataset of brackets and runs."""
     ordered = sorted(_followed(runs), key=lambda run: run.value)
     brackets = np.array(
-        [_bracket(ordered, each) for each in waits] if ordered else [(np.nan, np.nan)] * len(waits)
+        [_bracket(ordered, wait) for wait in waits] if ordered else [(np.nan, np.nan)] * len(waits)
     )
     values = {
         "exits": np.array(waits),
@@ -282,11 +282,11 @@ def _call(
 
 
 def _sentence(ds: xr.Dataset) -> str:
-    key, one = _key(ds), ds.isel(exits=-1)
+    key, point = _key(ds), ds.isel(exits=-1)
     exits = int(ds["exits"][-1])
-    if np.isnan(one["limit"]):
+    if np.isnan(point["limit"]):
         return f"No run has stuck within {exits} mesh exits so far."
-    sticks, passes = _ends_in_words(one)
+    sticks, passes = _ends_in_words(point)
     return f"Within {exits} mesh exits the gear sticks at {key} = {sticks} and not at {passes}."
 
 
@@ -294,13 +294,13 @@ def _rows(ds: xr.Dataset) -> Rows:
     """Limit and bracket for each number of exits."""
     yield f"Sticking limit of {_key(ds)}", "", ""
     for exits in ds["exits"].values:
-        one = ds.sel(exits=exits)
+        point = ds.sel(exits=exits)
         waited = f"within {exits} mesh exit{'s' if exits > 1 else ''}"
-        if np.isnan(one["limit"]):
+        if np.isnan(point["limit"]):
             yield waited, "-", "no run has stuck so early"
             continue
-        sticks, passes = _ends_in_words(one)
-        yield waited, _number(float(one["limit"]), one), f"sticks at {sticks}, passes at {passes}"
+        sticks, passes = _ends_in_words(point)
+        yield waited, _number(float(point["limit"]), point), f"sticks at {sticks}, passes at {passes}"
     left_out = int(ds.attrs.get("left_out", 0))
     yield "runs", str(ds.sizes["run"]), f"{left_out} more could not be finished" if left_out else ""
 
@@ -309,13 +309,13 @@ def _key(ds: xr.Dataset) -> str:
     return str(ds["limit"].attrs["long_name"]).removeprefix("sticking limit of ")
 
 
-def _ends_in_words(one: xr.Dataset) -> tuple[str, str]:
-    return _number(float(one["sticks"]), one), _number(float(one["passes"]), one)
+def _ends_in_words(point: xr.Dataset) -> tuple[str, str]:
+    return _number(float(point["sticks"]), point), _number(float(point["passes"]), point)
 
 
-def _number(value: float, one: xr.Dataset) -> str:
+def _number(value: float, point: xr.Dataset) -> str:
     """Write a value of a bracket with as many digits as distinguish its ends, four at least."""
-    sticks, passes, unit = float(one["sticks"]), float(one["passes"]), str(one["limit"].attrs["units"])
+    sticks, passes, unit = float(point["sticks"]), float(point["passes"]), str(point["limit"].attrs["units"])
     digits = next((n for n in range(4, 17) if f"{sticks:.{n}g}" != f"{passes:.{n}g}"), 17)
     return f"{value:.{digits}g}" + ("" if unit == "1" else f" {unit}")
 
