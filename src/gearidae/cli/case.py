@@ -1,10 +1,13 @@
-"""Find the scene that the command line names, and name a result after it."""
+"""What arguments of the command line name: a scene, the part of a dataset, a result."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import xarray as xr
 
 import gearidae
 from gearidae.errors import SceneError
@@ -15,6 +18,8 @@ if TYPE_CHECKING:
 
 _ALSO_PRESETS: Final = {"low_speed": "teodorescu2009_low_speed", "high_speed": "teodorescu2009"}
 """Shipped cases that are presets under another name: these have no units to be read."""
+_MOST_SHOWN: Final = 20
+"""Values of a dimension that an error lists."""
 
 
 def shipped_cases() -> dict[str, Path]:
@@ -58,6 +63,47 @@ def read_scene(case: str, settings: Sequence[str]) -> Scene:
         scene = load_case(shipped[case])
     changes = assignments(settings)
     return scene.replace(changes) if changes else scene
+
+
+def selected(ds: xr.Dataset, pairs: Sequence[str], option: str, dims: Sequence[str]) -> xr.Dataset:
+    """Pick a part of a dataset.
+
+    Parameters
+    ----------
+    pairs : sequence of str
+        ``dimension=value``.
+    option : str
+        That they were given with, for errors.
+    dims : sequence of str
+        Dimensions that a value may be picked of.
+
+    Returns
+    -------
+    xarray.Dataset
+        Without the dimensions of `pairs`.
+
+    Raises
+    ------
+    SceneError
+        If there is no such dimension or value, naming those that there are.
+    """
+    if not pairs:
+        return ds
+    for dim, value in assignments(pairs, option, "sam_fraction=0.5").items():
+        if dim not in dims:
+            known = f"must be one of {', '.join(dims)}" if dims else "there is nothing to select from"
+            raise SceneError(option, dim, known)
+        labels = ds[dim].values
+        numeric = np.issubdtype(labels.dtype, np.number) and isinstance(value, int | float)
+        # a value as it is printed is not always the same float
+        matches = (
+            np.isclose(labels, value, rtol=1e-9, atol=0.0) if numeric else labels.astype(str) == str(value)
+        )
+        if not matches.any():
+            shown = ", ".join(f"{label:g}" if numeric else str(label) for label in labels[:_MOST_SHOWN])
+            raise SceneError(f"{option} {dim}", value, f"must be one of {shown}")
+        ds = ds.isel({dim: int(np.flatnonzero(matches)[0])})
+    return ds
 
 
 def default_output(case: str, suffix: str) -> Path:

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import gearidae as gd
+from gearidae.cli.case import selected
 from gearidae.cli.codes import DONE
 from gearidae.cli.machine import say_json
 from gearidae.cli.output import say
-from gearidae.cli.selection import selected
 from gearidae.scene.pairs import quantity
 
 if TYPE_CHECKING:

@@ -9,10 +9,9 @@ from matplotlib.figure import Figure
 
 import gearidae as gd
 from gearidae.archive.select import swept_dims
-from gearidae.cli.case import default_output
+from gearidae.cli.case import default_output, selected
 from gearidae.cli.codes import DONE
 from gearidae.cli.output import say
-from gearidae.cli.selection import selected
 from gearidae.drawing.picture import usual_style
 from gearidae.errors import SceneError
 from gearidae.plot.files import MOVING

@@ -7,7 +7,7 @@ import math
 import xarray as xr
 from matplotlib.axes import Axes
 
-from gearidae.analysis.verdict.standstills import standstill_rows
+from gearidae.analysis.verdict.table import standstill_rows
 from gearidae.archive.variables import STANDSTILL_LIST
 from gearidae.drawing.style import Run, label_time, largest, legend, new_axes, runs_of, scale_for, tidy
 from gearidae.plot.outcome import look_of

@@ -201,7 +201,7 @@ class Results:
         """
         import pandas as pd
 
-        from gearidae.analysis.verdict.standstills import standstill_rows
+        from gearidae.analysis.verdict.table import standstill_rows
 
         names, rows = standstill_rows(self._ds)
         return pd.DataFrame(rows, columns=names)

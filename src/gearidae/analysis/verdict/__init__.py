@@ -1,6 +1,6 @@
 """Verdicts: what runs did, in one word each, from the extremes that the engine kept.
 
-`judge` holds the rules, `outcome` reads datasets, `table` shows outcomes in notebooks, `codes` are verdicts as numbers.
+`judge` holds the rules, `outcome` reads datasets, `table` makes tables of runs, `codes` has verdicts as numbers.
 Names are loaded on first use: a sweep judges its runs without xarray.
 """
 

@@ -1,4 +1,4 @@
-"""Verdicts as a table in a notebook."""
+"""Verdicts as a table in a notebook, and standstills with the verdict of each."""
 
 from __future__ import annotations
 
@@ -7,6 +7,14 @@ import math
 from collections.abc import Sequence
 from typing import Any, TypeVar
 
+import xarray as xr
+
+from gearidae.analysis.verdict.judge import standing_verdict
+from gearidae.archive.select import runs, swept_dims
+from gearidae.archive.totals import standstills_from_text
+from gearidae.archive.variables import STANDSTILL_LIST
+from gearidae.errors import SceneError
+from gearidae.records.standing import COLUMNS, Holding
 from gearidae.scene.prefixes import with_prefix
 
 T = TypeVar("T")
@@ -14,6 +22,16 @@ T = TypeVar("T")
 _SHORT = ("min_speed", "max_speed", "peak_force", "pull_off_force", "restitution", "impacts", "wall_time")
 """What stands beside the words, which say when a gear came to stand and after how many exits."""
 
+_OF_STANDSTILLS = (
+    "begin",
+    "end",
+    "advance",
+    "free_advance",
+    "held_torque",
+    "held_by",
+    "verdict",
+    "rest_time",
+)
 _COLUMNS = {
     "min_speed": ("min speed", "rad/s"),
     "max_speed": ("max speed", "rad/s"),
@@ -63,6 +81,44 @@ class Outcomes(list[T]):
 
     def _repr_html_(self) -> str:
         return _table(self)
+
+
+def standstill_rows(ds: xr.Dataset) -> tuple[list[str], list[list[Any]]]:
+    """Return names and rows of the table of standstills.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A single run, a sweep, or a selection from one.
+
+    Raises
+    ------
+    SceneError
+        If the runs have not kept their standstills.
+    """
+    if STANDSTILL_LIST.name not in ds.variables:
+        raise SceneError(
+            "standstills",
+            "(not kept)",
+            "need runs of gears of this version; a sweep keeps them with its extremes",
+        )
+    rows = [
+        [*label.values(), *(standstill[name] for name in _OF_STANDSTILLS)]
+        for label, run in runs(ds)
+        for standstill in _standstills_of(run)
+    ]
+    return [*swept_dims(ds), *_OF_STANDSTILLS], rows
+
+
+def _standstills_of(run: xr.Dataset) -> list[dict[str, Any]]:
+    standstills = []
+    for numbers in standstills_from_text(run[STANDSTILL_LIST.name].item() or "[]"):
+        standstill: dict[str, Any] = dict(zip(COLUMNS, numbers, strict=True))
+        end = float(run["followed_time"]) if math.isnan(standstill["end"]) else standstill["end"]
+        standstill["held_by"] = Holding(int(standstill["holding"])).words
+        standstill["verdict"] = standing_verdict(standstill["free_advance"], standstill["driven_time"], end)
+        standstills.append(standstill)
+    return standstills
 
 
 def _table(outcomes: Sequence[Any]) -> str:
