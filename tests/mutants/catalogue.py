@@ -597,4 +597,42 @@ MUTANTS = (
         "held = joined & (last > end)",
         ("studies/test_pull_off.py::test_one_asperity_has_the_pull_off_of_its_law",),
     ),
+    Mutant(
+        "hub of the pinion that does not know the force of its pin",
+        "engine/friction/hubs.py",
+        "pinion = math.hypot(along - pin[0], over - pin[1])\n    if",
+        "pinion = math.hypot(along, over)\n    if",
+        ("engine/test_joints.py",),
+    ),
+    Mutant(
+        "loads of hubs that are solved where no load is a solution",
+        "engine/friction/hubs.py",
+        "room = -half - math.sqrt(square * whole)",
+        "room = half - math.sqrt(square * whole)",
+        ("engine/test_hub_load.py::test_loads_solve_their_equation",),
+    ),
+    Mutant(
+        "friction of the coast flank left out of the loads of the hubs",
+        "engine/friction/hubs.py",
+        "return along, mesh.drive_friction - own.cosine * mesh.coast_friction - own.sine * mesh.coast",
+        "return along, mesh.drive_friction - own.sine * mesh.coast",
+        (
+            "engine/test_hub_load.py::test_a_train_rests_if_and_only_if_frictions_balance_it",
+            "engine/test_hub_load.py::test_balances_of_drawn_trains_with_hubs_close",
+        ),
+    ),
+    Mutant(
+        "a gear that holds with the friction of its hub alone, without the dry load",
+        "engine/friction/forces.py",
+        "margin = dry + own.gear_hub * loads.gear - abs(pairs.gear)",
+        "margin = own.gear_hub * loads.gear - abs(pairs.gear)",
+        ("engine/test_stick_slip.py", "engine/test_friction.py", "engine/test_hub_load.py"),
+    ),
+    Mutant(
+        "a pair that rolls without the change of its levers",
+        "engine/friction/forces.py",
+        "held = (first * on_pinion - second * on_gear + pairs.bend) / inertia",
+        "held = (first * on_pinion - second * on_gear) / inertia",
+        ("engine/test_hub_load.py::test_acceleration_of_a_rolling_pair_is_the_closed_form",),
+    ),
 )

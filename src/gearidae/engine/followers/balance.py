@@ -40,7 +40,7 @@ from gearidae.engine.energy.radius import radius_power
 from gearidae.engine.events.mesh_marks import crossed_mark
 from gearidae.engine.events.pair_events import newly_stretched
 from gearidae.engine.events.sliding import dry_guard
-from gearidae.engine.followers.joining import joining_lag
+from gearidae.engine.followers import joining
 from gearidae.engine.formulas import adams
 from gearidae.engine.formulas.quadrature import (
     Ends,
@@ -202,6 +202,7 @@ def _accumulate(m: Model, t: float, y: Floats, yp: Floats, now: bool) -> None:
     q.steps = 0
     q.time = t
     w, w_rate = y[W], yp[W]
+    joining.step(m, t, y, w_rate)
     gear = y[PHASE] / m.scene.phase_rate
     speed, exchange, error = _book_drive(m, h, t, y, yp)
     if m.scene.dry != 0:
@@ -325,7 +326,7 @@ def _note_resistance(m: Model, t: float, gear: float, y: Floats, yp: Floats) -> 
 def note_changes(m: Model, y: Floats) -> tuple[float, float]:
     """Note the changes of the energies at a state, and return what adhesion loss and radius work have pending there."""
     e, now = m.state.energy, m.work.energy_now
-    (stored, pending), lag = stored_energy(m, y), joining_lag(m)
+    (stored, pending), lag = stored_energy(m, y), joining.joining_lag(m)
     now.stored_change = stored - pending - e.start_stored
     now.kinetic_change = kinetic_energy(m, y) - e.start_kinetic
     return pending - lag, -lag if m.scene.radius_force == 0 else 0.0

@@ -50,7 +50,7 @@ def step(
     between : tuple of two ndarrays, shape (n,)
         Work space.
     """
-    if m.scene.follow.balance != 0:
+    if m.scene.follow.exposures != 0:  # they need the lags wherever a contact leaves a place
         joining.step(m, t, y, yp[W])
     if m.scene.follow.friction != 0:
         rubbing.book_rubbing(m, t, y, at[1], between[0], between[1])
@@ -65,8 +65,10 @@ def step(
 @compiled(inline=True)
 def event(m: Model, t: float, y: Floats, yp: Floats, found: PairEvent) -> None:
     """Take note of what has happened to a pair, before its history does."""
-    if m.scene.follow.balance != 0 and found.turns:
-        joining.event(m, y, found.coast, found.pair, found.k, found.gap)
+    if m.scene.follow.balance != 0:
+        joining.step(m, t, y, yp[W])
+        if found.turns:
+            joining.event(m, y, found.coast, found.pair, found.k, found.gap)
     if m.scene.follow.exposures != 0:
         exposures.event(m, t, y, yp, found)
 

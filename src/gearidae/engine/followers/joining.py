@@ -5,7 +5,7 @@ length changes along the path of contact, so that it loses
 
 .. math:: \int \ell\, dq = \ell q - \int q \dot\ell\, dt .
 
-The last integral, the lag, is followed from step to step. The work of the changing radius is less by the same: it has
+The last integral, the lag, is followed over the intervals of the balance and up to each event of a pair. The work of the changing radius is less by the same: it has
 been worked out as if nothing were lost until the turning point (`gearidae.engine.followers.balance`).
 """
 
@@ -36,7 +36,7 @@ def begin(m: Model, t: float) -> None:
 
 @compiled(inline=True)
 def step(m: Model, t: float, y: Floats, w_rate: float) -> None:
-    """Follow the lags of closing contacts to an accepted time.
+    """Follow the lags of closing contacts to an accepted time; over several steps, as they have no corner between events.
 
     Parameters
     ----------
