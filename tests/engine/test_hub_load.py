@@ -10,7 +10,7 @@ from gearidae.engine.backend import solve
 from gearidae.engine.events.events import chatters
 from gearidae.engine.events.sliding import REVERSALS_HIGH, begin_sliding, rest_reserve
 from gearidae.engine.followers.rubbing import note_rubbing
-from gearidae.engine.friction.hubs import consistent_loads, pin_force
+from gearidae.engine.friction.hubs import Mesh, consistent_loads, pin_force, vector_sum
 from gearidae.engine.integrate.start import set_rates
 from gearidae.engine.model.record_types import AT_REST, HELD_PAIR, STUCK
 from gearidae.engine.model.state import COAST, V, W
@@ -112,6 +112,16 @@ def test_rates_of_the_power_of_a_hub_are_those_along_the_motion():
         note_rubbing(m, 0.0, y + time * rates)
         ends.append(float(m.work.rubbing.power[2]))
     assert m.work.rubbing.power_rate[2] == pytest.approx((ends[1] - ends[0]) / (2.0 * h), rel=1e-4)
+
+
+def test_forces_of_the_coast_flank_are_those_of_the_drive_flank_turned():
+    """Its line of action is that of the drive flank turned by half a turn and twice the pressure angle."""
+    m, _ = standing(HIGH.replace({"gears.hub_friction": 0.3, "gears.pinion_hub_radius": 3e-6}))
+    angle = math.pi + 2.0 * HIGH.geometry.pressure_angle
+    turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+    drive, coast = np.array([0.7, 0.2]), np.array([1.3, -0.4])  # along and across, of each flank
+    total = vector_sum(m, Mesh(drive[0], coast[0], drive[1], coast[1]))
+    assert total == pytest.approx(drive + turn @ coast, rel=1e-12)
 
 
 def test_loads_solve_their_equation():

@@ -616,10 +616,7 @@ MUTANTS = (
         "engine/friction/hubs.py",
         "return along, mesh.drive_friction - own.cosine * mesh.coast_friction - own.sine * mesh.coast",
         "return along, mesh.drive_friction - own.sine * mesh.coast",
-        (
-            "engine/test_hub_load.py::test_a_train_rests_if_and_only_if_frictions_balance_it",
-            "engine/test_hub_load.py::test_balances_of_drawn_trains_with_hubs_close",
-        ),
+        ("engine/test_hub_load.py::test_forces_of_the_coast_flank_are_those_of_the_drive_flank_turned",),
     ),
     Mutant(
         "a gear that holds with the friction of its hub alone, without the dry load",
