@@ -24,6 +24,7 @@ np.savetxt(
 chart = gd.analysis.coating_map(scene, np.round(np.arange(1.0, 0.595, -0.02), 4))
 assessment = gd.analysis.assess("rig.csv", chart)
 print(
-    f"{assessment.verdict}: {assessment.sam_fraction:.3f} of the monolayer is left ({assessment.low:.3f} to {assessment.high:.3f})"
+    f"{assessment.verdict}: {assessment.sam_fraction:.3f} of the monolayer is left "
+    f"({assessment.low:.3f} to {assessment.high:.3f})"
 )
 gd.plot.write(gd.plot.coating_map(chart, assessment=assessment).figure, "assessed.png", overwrite=True)

@@ -40,7 +40,8 @@ scene = scene.replace({"drive.torque": float(torque["mean"])})
 chart = gd.analysis.coating_map(scene, np.round(np.arange(1.0, 0.555, -0.04), 4))
 assessment = gd.analysis.assess("worn.csv", chart, columns=columns)
 print(
-    f"{assessment.verdict}: {assessment.sam_fraction:.2f} of the monolayer is left ({assessment.low:.3f} to {assessment.high:.3f})"
+    f"{assessment.verdict}: {assessment.sam_fraction:.2f} of the monolayer is left "
+    f"({assessment.low:.3f} to {assessment.high:.3f})"
 )
 
 # 4. Report: the run with this torque and coating, as one page.
