@@ -89,12 +89,12 @@ def dataset_tables() -> str:
     for title, variables in groups:
         rows = [
             (
-                f"`{each.name}`",
-                ", ".join(each.dims) or "-",
-                each.units,
-                "; ".join(filter(None, (each.long_name, each.comment))),
+                f"`{variable.name}`",
+                ", ".join(variable.dims) or "-",
+                variable.units,
+                "; ".join(filter(None, (variable.long_name, variable.comment))),
             )
-            for each in variables
+            for variable in variables
         ]
         parts.append(f"## {title}\n\n{_table(headings, rows)}")
     for title, flags in (("Kinds of events", EventKind), ("Flanks", Flank)):
@@ -167,15 +167,15 @@ def combination_tables() -> str:
 def _record_tables(access: str, title: str, fields: Iterable[Quantity]) -> Iterator[str]:
     """List the fields of a record, then those of the records within it."""
     rows, inner = [], []
-    for each in fields:
-        meaning = each.meaning
-        if isinstance(each.kind, tuple):
-            name = f"{access}.{each.name}" + ("[k]" if each.shape else "")
-            inner.append((name, each.name.upper(), each.kind))
-            meaning += f": the record `{each.name.upper()}`"
-        elif each.unit.scaled != "1":
-            meaning += f" [{each.unit.scaled}]"
-        rows.append((f"`{access}.{each.name}`", meaning))
+    for field in fields:
+        meaning = field.meaning
+        if isinstance(field.kind, tuple):
+            name = f"{access}.{field.name}" + ("[k]" if field.shape else "")
+            inner.append((name, field.name.upper(), field.kind))
+            meaning += f": the record `{field.name.upper()}`"
+        elif field.unit.scaled != "1":
+            meaning += f" [{field.unit.scaled}]"
+        rows.append((f"`{access}.{field.name}`", meaning))
     yield f"## `{title}`\n\n{_table(('field', 'what it is'), rows)}"
     for name, heading, parts in inner:
         yield from _record_tables(name, heading, parts)

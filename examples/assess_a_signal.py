@@ -22,8 +22,9 @@ np.savetxt(
 )
 
 chart = gd.analysis.coating_map(scene, np.round(np.arange(1.0, 0.595, -0.02), 4))
-found = gd.analysis.assess("rig.csv", chart)
+assessment = gd.analysis.assess("rig.csv", chart)
 print(
-    f"{found.verdict}: {found.sam_fraction:.3f} of the monolayer is left ({found.low:.3f} to {found.high:.3f})"
+    f"{assessment.verdict}: {assessment.sam_fraction:.3f} of the monolayer is left "
+    f"({assessment.low:.3f} to {assessment.high:.3f})"
 )
-gd.plot.write(gd.plot.coating_map(chart, assessment=found).figure, "assessed.png", overwrite=True)
+gd.plot.write(gd.plot.coating_map(chart, assessment=assessment).figure, "assessed.png", overwrite=True)

@@ -38,11 +38,14 @@ scene = scene.replace({"drive.torque": float(torque["mean"])})
 
 # 3. Assess: the ringing of the worn gears, compared with a map at that torque.
 chart = gd.analysis.coating_map(scene, np.round(np.arange(1.0, 0.555, -0.04), 4))
-found = gd.analysis.assess("worn.csv", chart, columns=columns)
+assessment = gd.analysis.assess("worn.csv", chart, columns=columns)
 print(
-    f"{found.verdict}: {found.sam_fraction:.2f} of the monolayer is left ({found.low:.3f} to {found.high:.3f})"
+    f"{assessment.verdict}: {assessment.sam_fraction:.2f} of the monolayer is left "
+    f"({assessment.low:.3f} to {assessment.high:.3f})"
 )
 
 # 4. Report: the run with this torque and coating, as one page.
-run = gd.simulate(scene.replace({"name": "worn_gears", "coating.sam_fraction": float(found.sam_fraction)}))
+run = gd.simulate(
+    scene.replace({"name": "worn_gears", "coating.sam_fraction": float(assessment.sam_fraction)})
+)
 print(f"report: {gd.write_report(run, 'worn.html', overwrite=True)}")

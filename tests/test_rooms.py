@@ -18,9 +18,9 @@ def imported(path, package):
     prefix = f"{package}."
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
-            names = [one.name for one in node.names]
+            names = [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom) and node.module:
-            names = [f"{node.module}.{one.name}" for one in node.names]
+            names = [f"{node.module}.{alias.name}" for alias in node.names]
         else:
             continue
         yield from (name.removeprefix(prefix) for name in names if name.startswith(prefix))
@@ -31,28 +31,38 @@ def arrows(folder, package):
     rooms = {
         path.stem for path in folder.iterdir() if (path / "__init__.py").exists() or path.suffix == ".py"
     }
-    found = {room: set() for room in rooms - {"__init__"}}
+    imports = {room: set() for room in rooms - {"__init__"}}
     for path in folder.rglob("*.py"):
         room = path.relative_to(folder).parts[0].removesuffix(".py")
         if room != "__init__":  # the door, which shows names of upper rooms
             others = {name.partition(".")[0] for name in imported(path, package)}
-            found[room] |= (others & rooms) - {room, "__init__"}
-    return found
+            imports[room] |= (others & rooms) - {room, "__init__"}
+    return imports
 
 
 def test_no_arrow_between_rooms_of_the_engine_runs_back():
-    found = arrows(SOURCE / "engine", "gearidae.engine")
+    imports = arrows(SOURCE / "engine", "gearidae.engine")
     both_ways = sorted(
-        {tuple(sorted((one, other))) for one in found for other in found[one] if one in found[other]}
+        {
+            tuple(sorted((package, imported_package)))
+            for package in imports
+            for imported_package in imports[package]
+            if package in imports[imported_package]
+        }
     )
     assert both_ways == []
-    order = list(TopologicalSorter(found).static_order())
+    order = list(TopologicalSorter(imports).static_order())
     assert order.index("model") < order.index("motion") < order.index("setup") < order.index("integrate")
 
 
 def test_no_two_rooms_of_the_package_import_each_other():
-    found = arrows(SOURCE, "gearidae")
-    assert [(one, other) for one in found for other in found[one] if one in found[other]] == []
+    imports = arrows(SOURCE, "gearidae")
+    assert [
+        (package, imported_package)
+        for package in imports
+        for imported_package in imports[package]
+        if package in imports[imported_package]
+    ] == []
 
 
 def test_a_circle_would_be_found(tmp_path):

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
 
-from gearidae import compiled as own
+import gearidae.compiled
 
 __all__ = ["SOURCES", "compiled", "compiled_callback"]
 
@@ -21,9 +21,9 @@ SOURCES = (Path(__file__).parent,)
 
 def compiled(*, makes_arrays: bool = False) -> Callable[[F], F]:
     """Compile a function as `gearidae.compiled.compiled` does, into the benchmark's cache."""
-    return own.compiled(makes_arrays=makes_arrays, sources=SOURCES)
+    return gearidae.compiled.compiled(makes_arrays=makes_arrays, sources=SOURCES)
 
 
 def compiled_callback(signature: Any) -> Callable[[F], Any]:
     """Compile a C callback as `gearidae.compiled.compiled_callback` does, into the benchmark's cache."""
-    return own.compiled_callback(signature, sources=SOURCES)
+    return gearidae.compiled.compiled_callback(signature, sources=SOURCES)

@@ -148,10 +148,10 @@ def ensemble_cost(
         ds = gd.studies.ensemble(scene, VARY, members, **settings)
     finally:
         watch.end()
-    wall, own = time.perf_counter() - began, time.process_time() - processor
+    wall, processor_time = time.perf_counter() - began, time.process_time() - processor
     now_used, now_solved = elsewhere()
     solving = watch.spent + now_solved - solved
-    return Cost(members, wall, own + now_used - used, solving, 1e-6 * peak_memory()), ds
+    return Cost(members, wall, processor_time + now_used - used, solving, 1e-6 * peak_memory()), ds
 
 
 def wall_apart(scene: gd.Scene, members: int, processes: int, folder: Path) -> float:
@@ -167,10 +167,10 @@ def _part(scene: gd.Scene, members: int, archive: Path) -> float:
     return ensemble_cost(scene, members, 1, archive)[0].wall
 
 
-def same_runs(one: xr.Dataset, other: xr.Dataset) -> bool:
+def same_runs(left: xr.Dataset, right: xr.Dataset) -> bool:
     """Whether two ensembles agree to the last bit in all but the times that their runs took."""
-    timed = [name for name in ("wall_time",) if name in one]
-    first, second = (each.drop_vars(timed).drop_attrs(deep=False) for each in (one, other))
+    timed = [name for name in ("wall_time",) if name in left]
+    first, second = (ds.drop_vars(timed).drop_attrs(deep=False) for ds in (left, right))
     return bool(first.identical(second))
 
 

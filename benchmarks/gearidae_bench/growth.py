@@ -117,9 +117,9 @@ def measure_elastic(name: str = "high_sam", repeats: int = 5) -> dict[str, float
         for bodies in times:
             _drain(scene.replace({"contact.bodies": bodies}))
         for _ in range(repeats):
-            for bodies, own in times.items():
+            for bodies, durations in times.items():
                 run = scene.replace({"contact.bodies": bodies})
-                own.append(_timed(lambda run=run: _drain(run), 1))  # type: ignore[misc]
+                durations.append(_timed(lambda run=run: _drain(run), 1))  # type: ignore[misc]
         ratios[f"{fraction:g}"] = statistics.median(times["elastic"]) / statistics.median(times["rigid"])
     return ratios
 
@@ -143,11 +143,11 @@ def measure_sweep(runs: int = 8, repeats: int = 5) -> float:
             list(pool.map(_drain, scenes))
 
     sweep(2)
-    one, two = [], []
+    single, double = [], []
     for _ in range(repeats):
-        one.append(_timed(lambda: sweep(1), 1))
-        two.append(_timed(lambda: sweep(2), 1))
-    return statistics.median(one) / (2.0 * statistics.median(two))
+        single.append(_timed(lambda: sweep(1), 1))
+        double.append(_timed(lambda: sweep(2), 1))
+    return statistics.median(single) / (2.0 * statistics.median(double))
 
 
 _START = """

@@ -41,7 +41,7 @@ def arm(m: Model, y: Floats, heights: Floats) -> bool:
         Whether there is any.
     """
     heights[:] = -np.inf
-    found = False
+    armed = False
     reach = pairs_near(m, y)
     for i in range(reach.total):
         coast, pair = pair_at(reach, i)
@@ -54,8 +54,8 @@ def arm(m: Model, y: Floats, heights: Floats) -> bool:
             joined = h.joined[material]
             if m.scene.material[material].stretch_limit > 0.0 and joined < gap < m.scene.cutoff:
                 heights[MATERIALS * k + material] = joined
-                found = True
-    return found
+                armed = True
+    return armed
 
 
 @compiled()

@@ -158,8 +158,8 @@ def main() -> None:
     """Print the table."""
     pairs = int(sys.argv[1]) if len(sys.argv) > 1 else 50
     words = sys.argv[2:]
-    chosen = [each for each in COMPARISONS if all(word in each.title for word in words)]
-    sys.stdout.write(cost_table([measure_option(each, pairs) for each in chosen]))
+    chosen = [comparison for comparison in COMPARISONS if all(word in comparison.title for word in words)]
+    sys.stdout.write(cost_table([measure_option(comparison, pairs) for comparison in chosen]))
 
 
 if __name__ == "__main__":

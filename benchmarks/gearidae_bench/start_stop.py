@@ -86,13 +86,13 @@ _OWN_PAIR: Final = {
 
 def start_stop_scenes() -> dict[str, Scene]:
     """Scenes by the names of the table's rows."""
-    own = Scene.from_dict(_OWN_PAIR)
+    pair = Scene.from_dict(_OWN_PAIR)
     cases = {
         name: load_case(_CASES / f"{name}.toml").replace({"run.samples": SAMPLES})
         for name in ("start_up", "braking", "alternating")
     }
-    worn = own.replace({"coating.sam_fraction": 0.7})
-    return {"18 and 54 teeth, coated, 10 s": own, **cases, "18 and 54 teeth, 70 %, 10 s": worn}
+    worn = pair.replace({"coating.sam_fraction": 0.7})
+    return {"18 and 54 teeth, coated, 10 s": pair, **cases, "18 and 54 teeth, 70 %, 10 s": worn}
 
 
 @dataclass(frozen=True, slots=True)

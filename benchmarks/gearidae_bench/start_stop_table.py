@@ -115,8 +115,8 @@ def _rtol_rows(result: StartStop) -> Iterator[Sequence[str]]:
         for quantity in QUANTITIES:
             entries = [_entry(result, scene, "auto", rtol) for rtol in _RTOLS]
             errors = [relative_error(e.reached, both["auto"], quantity) if e else math.nan for e in entries]
-            own = _own_error(result, scene, quantity)
-            yield scene, quantity, *(f"{error:.1e}" for error in errors), f"{own:.0e}"
+            error_of_reference = _own_error(result, scene, quantity)
+            yield scene, quantity, *(f"{error:.1e}" for error in errors), f"{error_of_reference:.0e}"
 
 
 def _loss_rows(result: StartStop) -> Iterator[Sequence[str]]:

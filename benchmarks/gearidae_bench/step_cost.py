@@ -111,16 +111,16 @@ def measure_cost(duration: float, rtol: float) -> tuple[list[Cost], float]:
         done = subprocess.run(
             [sys.executable, "-c", program], env=environment, check=True, stdout=subprocess.PIPE, text=True
         )
-    found: dict[str, Any] = json.loads(done.stdout)
+    timing: dict[str, Any] = json.loads(done.stdout)
     whole = 1e9 * _timed_run(duration, rtol)
-    return _costs(found, whole), whole
+    return _costs(timing, whole), whole
 
 
-def _costs(found: dict[str, Any], whole: float) -> list[Cost]:
+def _costs(timing: dict[str, Any], whole: float) -> list[Cost]:
     """Net time of each part from the cycles between its readings, and of what is in no part."""
-    steps, between, reading = found["steps"], found["between"], found["reading"]
-    calls = dict(zip((part.label for part in PARTS), found["calls"], strict=True))
-    gross = dict(zip((part.label for part in PARTS), found["spent"], strict=True))
+    steps, between, reading = timing["steps"], timing["between"], timing["reading"]
+    calls = dict(zip((part.label for part in PARTS), timing["calls"], strict=True))
+    gross = dict(zip((part.label for part in PARTS), timing["spent"], strict=True))
     net = {}
     for part in PARTS:
         inside = [other.label for other in PARTS if other.inside == part.label]
@@ -128,7 +128,7 @@ def _costs(found: dict[str, Any], whole: float) -> list[Cost]:
         lost = sum(gross[other] + calls[other] * (reading - between) for other in inside)
         net[part.label] = gross[part.label] - calls[part.label] * between - lost
     outer = [part.label for part in PARTS if not part.inside]
-    left = found["cycles"] - sum(gross[label] + calls[label] * (reading - between) for label in outer)
+    left = timing["cycles"] - sum(gross[label] + calls[label] * (reading - between) for label in outer)
     scale = whole / (sum(net.values()) + left)
     costs = [Cost(part.label, calls[part.label] / steps, scale * net[part.label]) for part in PARTS]
     return [*costs, Cost("loop and root search", 1.0, scale * left)]
@@ -188,7 +188,7 @@ def _run(duration: float, rtol: float) -> None:
     cycles = now() - start
     between, reading = _overhead(cells[2 * len(PARTS) :], read, add)
     spent, calls = cells[: 2 * len(PARTS) : 2], cells[1 : 2 * len(PARTS) : 2]
-    found = {
+    timing = {
         "steps": statistics.steps,
         "cycles": int(cycles),
         "between": between,
@@ -196,7 +196,7 @@ def _run(duration: float, rtol: float) -> None:
         "spent": spent.tolist(),
         "calls": calls.tolist(),
     }
-    sys.stdout.write(json.dumps(found))
+    sys.stdout.write(json.dumps(timing))
 
 
 def _counter() -> tuple[Any, Any]:

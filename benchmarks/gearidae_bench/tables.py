@@ -90,12 +90,12 @@ def ratio_range(result: Result, scene: str, rivals: Sequence[str]) -> tuple[floa
 
 def broken_off(result: Result, scene: str) -> list[str]:
     """Name the contenders whose runs of a scene broke off, each with the number of these runs and of all."""
-    found = []
+    labels = []
     for key, label in result.labels.items():
         errors = [p.error for p in _series(result, scene, key)]
         if broken := sum(map(math.isinf, errors)):
-            found.append(f"{label} ({broken} of {len(errors)} runs)")
-    return found
+            labels.append(f"{label} ({broken} of {len(errors)} runs)")
+    return labels
 
 
 def beyond_rows(result: Result) -> Iterator[tuple[str, str]]:
@@ -104,10 +104,10 @@ def beyond_rows(result: Result) -> Iterator[tuple[str, str]]:
         first = result.growth[0]
         for g in result.growth:
             times = g.simulated / first.simulated
-            each, memory = 1e6 * g.time / g.steps, g.memory / 1e6
+            per_step, memory = 1e6 * g.time / g.steps, g.memory / 1e6
             yield (
                 f"{g.simulated * 1e3:g} ms simulated ({times:g} times)",
-                f"{g.time * 1e3:.1f} ms ({g.time / first.time:.2f} times), {each:.2f} us a step, {memory:.1f} MB",
+                f"{g.time * 1e3:.1f} ms ({g.time / first.time:.2f} times), {per_step:.2f} us a step, {memory:.1f} MB",
             )
     for fraction, ratio in result.elastic.items():
         yield f"elastic contact, SAM fraction {fraction}", f"{ratio:.1f} times the asperity model's time"

@@ -61,9 +61,9 @@ def test_map_over_torque_by_its_name_alone():
     # low-speed steady state: the speed goes with the square root of the torque, to what the adhesion takes
     speeds = chart.median_gear_speed.sel(sam_fraction=1.0)
     assert np.allclose(speeds / 1.5, np.sqrt(chart.torque / 4.5e-18), rtol=2e-3)
-    found = assess(gd.simulate(SCENE.replace({"drive.torque": 9e-18})), chart)
-    assert found.verdict == "does not fit"
-    assert "another torque" in found.explanation
+    assessment = assess(gd.simulate(SCENE.replace({"drive.torque": 9e-18})), chart)
+    assert assessment.verdict == "does not fit"
+    assert "another torque" in assessment.explanation
     with pytest.raises(gd.SceneError, match="needs a drive torque above zero"):
         coating_map(SCENE.replace({"drive.torque": 0.0}), [1.0, 0.8], over="drive.torque")
 
@@ -80,12 +80,12 @@ def test_map_survives_the_disk(chart, tmp_path):
 
 
 def test_assessment_reads_as_a_sentence(chart, worn):
-    found = assess(worn, chart)
-    assert found.conclusive
-    assert found.sam_fraction == pytest.approx(0.65, abs=0.005)  # between the map's points 0.1 apart
-    assert found.low < found.sam_fraction < found.high
-    assert found.uncertainty == 0.25 * (found.high - found.low)
-    assert str(found).startswith("SAM fraction 0.6")
+    assessment = assess(worn, chart)
+    assert assessment.conclusive
+    assert assessment.sam_fraction == pytest.approx(0.65, abs=0.005)  # between the map's points 0.1 apart
+    assert assessment.low < assessment.sam_fraction < assessment.high
+    assert assessment.uncertainty == 0.25 * (assessment.high - assessment.low)
+    assert str(assessment).startswith("SAM fraction 0.6")
 
 
 def test_signal_files(chart, worn, tmp_path):
@@ -96,16 +96,16 @@ def test_signal_files(chart, worn, tmp_path):
     for name, separator in (("comma.csv", ","), ("semicolon.csv", ";"), ("tab.txt", "\t")):
         heading = separator.join(["# from the rig\ntime [ms]", "other", "gear_speed (rpm)"])
         np.savetxt(tmp_path / name, columns, fmt="%.10g", delimiter=separator, header=heading, comments="")
-        found = assess(str(tmp_path / name), chart)
-        assert found.frequencies[:5] == pytest.approx(reference.frequencies[:5], rel=1e-4, abs=0)
+        assessment = assess(str(tmp_path / name), chart)
+        assert assessment.frequencies[:5] == pytest.approx(reference.frequencies[:5], rel=1e-4, abs=0)
 
 
 def test_one_impact_of_a_worn_contact_is_ambiguous_without_its_history(worn):
-    one = worn.gear_speed.sel(time=slice(0.18, 0.22))
-    found = assess(one, coating_map(SCENE, [0.8, 0.7, 0.6, 0.5]), history="unknown")
-    assert found.verdict == "ambiguous"
-    assert np.isnan(found.sam_fraction)
-    assert found.low < 0.65 < found.high
+    impact = worn.gear_speed.sel(time=slice(0.18, 0.22))
+    assessment = assess(impact, coating_map(SCENE, [0.8, 0.7, 0.6, 0.5]), history="unknown")
+    assert assessment.verdict == "ambiguous"
+    assert np.isnan(assessment.sam_fraction)
+    assert assessment.low < 0.65 < assessment.high
 
 
 @pytest.mark.parametrize(
@@ -118,33 +118,34 @@ def test_one_impact_of_a_worn_contact_is_ambiguous_without_its_history(worn):
     ],
 )
 def test_what_a_signal_cannot_tell_is_said(change, verdict, words, chart):
-    found = assess(gd.simulate(SCENE.replace(change)), chart)
-    assert found.verdict == verdict, found
-    assert not found.conclusive
-    assert np.isnan(found.sam_fraction)
-    assert words in found.explanation
+    assessment = assess(gd.simulate(SCENE.replace(change)), chart)
+    assert assessment.verdict == verdict, assessment
+    assert not assessment.conclusive
+    assert np.isnan(assessment.sam_fraction)
+    assert words in assessment.explanation
 
 
 def test_noise_alone_has_no_impacts(chart, worn):
     noise = xr.full_like(worn.gear_speed, 1.5) + 1e-2 * np.random.default_rng(0).standard_normal(
         worn.sizes["time"]
     )
-    found = assess(noise, chart)
-    assert found.verdict == "no impacts"
-    assert "above the noise" in found.explanation
+    assessment = assess(noise, chart)
+    assert assessment.verdict == "no impacts"
+    assert "above the noise" in assessment.explanation
 
 
 def test_slow_sampling_is_pointed_out(chart, worn):
-    found = assess(worn.gear_speed.isel(time=slice(None, None, 13)), chart)  # 7.7 kHz
-    assert "sampled at 7.69e+03 Hz" in found.explanation
+    assessment = assess(worn.gear_speed.isel(time=slice(None, None, 13)), chart)  # 7.7 kHz
+    assert "sampled at 7.69e+03 Hz" in assessment.explanation
 
 
 def test_a_sensor_that_counts_backward(chart, worn):
     speed = worn.gear_speed.isel(time=slice(None, None, 2))
-    known, found = assess(speed, chart), assess(-speed, chart)
+    known, reversed_sign = assess(speed, chart), assess(-speed, chart)
     assert known.conclusive
     assert_same(
-        found, replace(known, explanation=f"{known.explanation}; the speed is taken with its sign reversed")
+        reversed_sign,
+        replace(known, explanation=f"{known.explanation}; the speed is taken with its sign reversed"),
     )
 
 
@@ -268,12 +269,12 @@ def test_a_filter_is_a_frequency(cutoff, chart, worn):
 
 
 def test_assessment_shows_itself_in_a_notebook(chart, worn):
-    found = assess(worn, chart)
-    shown = found._repr_html_()
-    assert f"<b>{found.verdict}</b>" in shown
-    assert f"{found.low:.4g} to {found.high:.4g}" in shown
-    assert with_prefix(found.frequencies[0], "Hz", 4) in shown
-    unknown = replace(found, sam_fraction=math.nan, low=math.nan, high=math.nan, explanation="<a & b>")
+    assessment = assess(worn, chart)
+    shown = assessment._repr_html_()
+    assert f"<b>{assessment.verdict}</b>" in shown
+    assert f"{assessment.low:.4g} to {assessment.high:.4g}" in shown
+    assert with_prefix(assessment.frequencies[0], "Hz", 4) in shown
+    unknown = replace(assessment, sam_fraction=math.nan, low=math.nan, high=math.nan, explanation="<a & b>")
     shown = unknown._repr_html_()
     assert "interval" not in shown
     assert "&lt;a &amp; b&gt;" in shown

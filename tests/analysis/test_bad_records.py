@@ -39,43 +39,48 @@ def test_slow_sampling_is_never_confidently_wrong(rate, maps, speeds):
     for fraction in (0.97, 0.9, 0.78, 0.637, 0.56, 0.45):
         for start, stop in ((0.0, 0.3), (0.0, 0.15), (0.05, 0.3), (0.15, 0.3), (0.2, 0.3)):
             signal = record(speeds["auto", 1.0, fraction], rate, start, stop)
-            found = assess(signal, maps["one torque"])
-            clear += found.conclusive
-            assert not found.conclusive or found.low <= fraction <= found.high, (fraction, start, stop, found)
+            assessment = assess(signal, maps["one torque"])
+            clear += assessment.conclusive
+            assert not assessment.conclusive or assessment.low <= fraction <= assessment.high, (
+                fraction,
+                start,
+                stop,
+                assessment,
+            )
             if fraction < 0.6:
-                assert not found.conclusive, (fraction, start, stop, found)
+                assert not assessment.conclusive, (fraction, start, stop, assessment)
     assert clear >= (5 if rate == 10e3 else 1)
 
 
 def test_slow_sampling_behind_a_filter_is_believed(maps, speeds):
     signal = record(speeds["auto", 1.0, 0.97], 5e3)
     assert assess(signal, maps["one torque"]).verdict == "sampled too slowly"
-    found = assess(signal, maps["one torque"], anti_alias_filter=2e3)
-    assert found.conclusive
-    assert found.low < 0.97 < found.high
+    assessment = assess(signal, maps["one torque"], anti_alias_filter=2e3)
+    assert assessment.conclusive
+    assert assessment.low < 0.97 < assessment.high
 
 
 @pytest.mark.parametrize(("fraction", "torque"), [(0.9, 1.1), (0.97, 1.2)])
 @pytest.mark.parametrize("title", TITLES)
 def test_another_torque_is_not_taken_for_wear(fraction, torque, title, maps, speeds):
     """Once 0.879 [0.869, 0.890] and 0.913 [0.902, 0.926]."""
-    found = assess(record(speeds["auto", torque, fraction]), maps[title])
-    assert found.low < fraction < found.high
+    assessment = assess(record(speeds["auto", torque, fraction]), maps[title])
+    assert assessment.low < fraction < assessment.high
     if title == "over torque":
-        assert found.conclusive
-        assert found.sam_fraction == pytest.approx(fraction, abs=0.015)
+        assert assessment.conclusive
+        assert assessment.sam_fraction == pytest.approx(fraction, abs=0.015)
         # the speed is known to a quarter of a per cent from where the gear has started slower
-        assert found.torque == pytest.approx(4.5e-18 * torque, rel=0.01, abs=0)
+        assert assessment.torque == pytest.approx(4.5e-18 * torque, rel=0.01, abs=0)
 
 
 @pytest.mark.parametrize("rate", [100e3, 50e3, 25e3])
 @pytest.mark.parametrize("title", TITLES)
 def test_a_gear_that_turns_back_is_no_coated_one(rate, title, maps, speeds):
     """Once 0.602 [0.599, 0.606] at 50 kHz."""
-    found = assess(record(speeds["auto", 1.0, 0.45], rate), maps[title])
-    assert found.verdict == "gear stops"
-    assert "turns back" in found.explanation
-    assert np.isnan(found.sam_fraction)
+    assessment = assess(record(speeds["auto", 1.0, 0.45], rate), maps[title])
+    assert assessment.verdict == "gear stops"
+    assert "turns back" in assessment.explanation
+    assert np.isnan(assessment.sam_fraction)
 
 
 @pytest.mark.parametrize("rate", [100e3, 50e3])
@@ -83,10 +88,10 @@ def test_rounded_speeds_are_not_taken_for_wear(rate, maps, speeds):
     """Once 0.762: a ring of 0.001 rad/s in steps of 0.005."""
     signal = record(speeds["auto", 1.0, 0.97], rate)
     for step, verdict in ((0.005, "rounded too coarsely"), (0.0005, "clear")):
-        found = assess(step * np.round(signal / step), maps["one torque"])
+        assessment = assess(step * np.round(signal / step), maps["one torque"])
         if rate == 100e3 or verdict == "clear":
-            assert found.verdict == verdict
-        assert not found.conclusive or found.low < 0.97 < found.high
+            assert assessment.verdict == verdict
+        assert not assessment.conclusive or assessment.low < 0.97 < assessment.high
 
 
 @pytest.mark.parametrize("rate", [100e3, 25e3, 10e3])
@@ -94,9 +99,9 @@ def test_rounded_speeds_are_not_taken_for_wear(rate, maps, speeds):
 def test_a_tone_is_not_taken_for_ringing(rate, title, maps, speeds):
     """Once 0.736 [0.734, 0.738]: 3 kHz of something else, stronger than the ringing of 1.4 kHz."""
     signal = record(speeds["auto", 1.0, 0.97], rate)
-    found = assess(signal + 0.01 * np.sin(2.0 * np.pi * 3e3 * signal.time), maps[title])
-    assert found.verdict == "does not fit"
-    assert "is there before them too" in found.explanation
+    assessment = assess(signal + 0.01 * np.sin(2.0 * np.pi * 3e3 * signal.time), maps[title])
+    assert assessment.verdict == "does not fit"
+    assert "is there before them too" in assessment.explanation
 
 
 def test_an_offset_that_shifts_the_windows_stays_in_the_interval(maps):
@@ -116,10 +121,10 @@ def test_a_wrong_calibration_is_found_by_the_spacing_of_the_impacts(gain, title,
     """With an error of 4 % 6 of 21 clear verdicts were wrong once, and others said that nothing rings."""
     for fraction in (0.97, 0.9, 0.78, 0.637):
         signal = gain * record(speeds["auto", 1.0, fraction])
-        found = assess(signal, maps[title])
-        assert found.verdict == "check the speed's calibration", (fraction, found)
-        assert np.isnan(found.sam_fraction)
-        assert f"% too {'high' if gain > 1 else 'low'}" in found.explanation
+        assessment = assess(signal, maps[title])
+        assert assessment.verdict == "check the speed's calibration", (fraction, assessment)
+        assert np.isnan(assessment.sam_fraction)
+        assert f"% too {'high' if gain > 1 else 'low'}" in assessment.explanation
         known = assess(signal, maps[title], calibration=f"{100 * abs(gain - 1):.3g} %")
         assert known.verdict != "check the speed's calibration"
         assert not known.conclusive or known.low <= fraction <= known.high, (fraction, known)
@@ -138,9 +143,9 @@ def test_a_wrong_calibration_is_found_by_the_spacing_of_the_impacts(gain, title,
 def test_a_stated_error_of_the_sensor_is_allowed_for(gain, offset, known, title, maps, speeds):
     """The interval holds the truth; with less of the coating left, where the frequency changes faster, it is narrow."""
     for fraction in (0.97, 0.9, 0.78, 0.637):
-        found = assess(gain * record(speeds["auto", 1.0, fraction]) + offset, maps[title], **known)
-        assert np.isnan(found.low) or found.low < fraction < found.high, (fraction, found)
-        assert found.conclusive or fraction > 0.8, (fraction, found)
+        assessment = assess(gain * record(speeds["auto", 1.0, fraction]) + offset, maps[title], **known)
+        assert np.isnan(assessment.low) or assessment.low < fraction < assessment.high, (fraction, assessment)
+        assert assessment.conclusive or fraction > 0.8, (fraction, assessment)
 
 
 @pytest.mark.parametrize(
@@ -176,8 +181,8 @@ def test_a_part_of_the_table(maps):
     chosen = {name: CONDITIONS[name] for name in REDUCED}
     rows = make_rows(maps, chosen, fractions=(0.9, 0.637, 0.45), rates=(100e3, 10e3), trials=1, seed=19)
     clear = 0
-    for name, each in rows.items():
-        for title, row in each.items():
+    for name, columns in rows.items():
+        for title, row in columns.items():
             assert row.records == 6
             assert row.share_wrong <= 0.05, (name, title, row.wrong)
             clear += row.clear
@@ -197,9 +202,9 @@ def test_a_spike_is_named_by_its_sample(factor, size, title, maps, speeds):
     for place in (4000, 11111, 17000):
         spoilt = signal.copy()
         spoilt[place : place + size] = factor * float(spoilt.median())
-        found = assess(spoilt, maps[title])
-        assert found.verdict == "does not fit"
-        assert f"sample {place} (" in found.explanation
+        assessment = assess(spoilt, maps[title])
+        assert assessment.verdict == "does not fit"
+        assert f"sample {place} (" in assessment.explanation
         frame = (
             spoilt.where(spoilt != spoilt[place])
             .to_series()

@@ -42,9 +42,9 @@ def runs():
     return gd.sweep(SCENE, {"coating.sam_fraction": FRACTIONS})
 
 
-def own(runs, fraction):
-    one = runs.sel(sam_fraction=fraction)
-    return one.isel(event=(one.event_sam_fraction == fraction).values)
+def run_of(runs, fraction):
+    run = runs.sel(sam_fraction=fraction)
+    return run.isel(event=(run.event_sam_fraction == fraction).values)
 
 
 # The map's spacing here is 0.02, twice that of the default; an error of 0.015 is a third of what separates the
@@ -52,16 +52,16 @@ def own(runs, fraction):
 @pytest.mark.parametrize("fraction", FRACTIONS)
 @pytest.mark.parametrize("decibels", [40.0, 10.0])
 def test_fraction_comes_back_from_a_noisy_signal(fraction, decibels, chart, runs):
-    found = assess(noisy(own(runs, fraction), decibels, np.random.default_rng(7)), chart)
-    assert found.conclusive, found
-    assert found.sam_fraction == pytest.approx(fraction, abs=0.015 if fraction > 0.9 else 0.004)
-    assert found.low < found.sam_fraction < found.high
+    assessment = assess(noisy(run_of(runs, fraction), decibels, np.random.default_rng(7)), chart)
+    assert assessment.conclusive, assessment
+    assert assessment.sam_fraction == pytest.approx(fraction, abs=0.015 if fraction > 0.9 else 0.004)
+    assert assessment.low < assessment.sam_fraction < assessment.high
 
 
 @pytest.mark.parametrize("fraction", FRACTIONS[1:])
 @pytest.mark.parametrize("change", ["length", "sampling", "jitter"])
 def test_other_lengths_and_samplings_give_the_same(fraction, change, chart, runs):
-    signal = noisy(own(runs, fraction), 20.0, np.random.default_rng(3))
+    signal = noisy(run_of(runs, fraction), 20.0, np.random.default_rng(3))
     if change == "length":
         signal = signal.sel(time=slice(None, 0.11))
     elif change == "sampling":  # 33 kHz, not a divisor of the simulation's rate
@@ -69,19 +69,19 @@ def test_other_lengths_and_samplings_give_the_same(fraction, change, chart, runs
         signal = signal.interp(time=grid)
     else:  # times rounded to the microsecond, as files have them
         signal = signal.assign_coords(time=np.round(signal.time.values + 3e-7, 6))
-    found = assess(signal, chart)
-    assert found.conclusive, found
-    assert found.sam_fraction == pytest.approx(fraction, abs=0.008)
+    assessment = assess(signal, chart)
+    assert assessment.conclusive, assessment
+    assert assessment.sam_fraction == pytest.approx(fraction, abs=0.008)
 
 
 @pytest.mark.parametrize("fraction", FRACTIONS[:-1])
 def test_record_that_lacks_the_start_is_recognised_by_its_steps(fraction, chart, runs):
-    signal = noisy(own(runs, fraction), 20.0, np.random.default_rng(5)).sel(time=slice(0.1, None))
-    found = assess(signal, chart)
-    assert found.conclusive, found
-    assert found.sam_fraction == pytest.approx(fraction, abs=0.015)
+    signal = noisy(run_of(runs, fraction), 20.0, np.random.default_rng(5)).sel(time=slice(0.1, None))
+    assessment = assess(signal, chart)
+    assert assessment.conclusive, assessment
+    assert assessment.sam_fraction == pytest.approx(fraction, abs=0.015)
     if fraction < 0.8:  # above, the contact has settled, and the first impact is like the later ones
-        assert found.history == "unknown"
+        assert assessment.history == "unknown"
 
 
 def table(trials):
@@ -97,10 +97,16 @@ def table(trials):
         for decibels in (40, 20, 10, 0, -5, -10):
             cells = []
             for fraction in FRACTIONS:
-                one = own(runs, fraction)
-                found = [assess(noisy(one, decibels, rng).sel(time=cut), chart) for _ in range(trials)]
-                errors = [each.sam_fraction - fraction for each in found if each.conclusive]
-                inside = sum(each.low <= fraction <= each.high for each in found if each.conclusive)
+                run = run_of(runs, fraction)
+                assessments = [assess(noisy(run, decibels, rng).sel(time=cut), chart) for _ in range(trials)]
+                errors = [
+                    assessment.sam_fraction - fraction for assessment in assessments if assessment.conclusive
+                ]
+                inside = sum(
+                    assessment.low <= fraction <= assessment.high
+                    for assessment in assessments
+                    if assessment.conclusive
+                )
                 rms = f"{np.sqrt(np.mean(np.square(errors))):.4f}" if errors else "-"
                 cells.append(f"{rms} ({len(errors)}, {inside})")
             sys.stdout.write(f"| {decibels} | " + " | ".join(cells) + " |\n")

@@ -22,10 +22,10 @@ NEW = (
 )
 
 
-def judged(changes, found=STOOD):
+def judged(changes, extremes=STOOD):
     scene = LOW.replace({"load.torque": 3e-18} | changes)
     scheduled = bool(len(scene.drive.schedule) or len(scene.load.schedule))
-    return earlier_verdict(found, "finished", scene.to_dict(), scheduled=scheduled)
+    return earlier_verdict(extremes, "finished", scene.to_dict(), scheduled=scheduled)
 
 
 @pytest.mark.parametrize(

@@ -58,5 +58,5 @@ def test_an_unsteady_speed_widens_the_interval():
     record = ring_set(0.85)
     drifting = RingSet(record.numbers, record.frequency, record.uncertainty, record.speed, 0.03)
     for chart in (model(), model([0.7, 1.0, 1.3])):
-        steady, widened = (first_explanation(chart, each, "auto") for each in (record, drifting))
+        steady, widened = (first_explanation(chart, signal, "auto") for signal in (record, drifting))
         assert np.ptp(widened.possible) > 1.3 * np.ptp(steady.possible)

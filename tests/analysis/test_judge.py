@@ -43,7 +43,7 @@ BACK = Extremes(MOVES, turned_back=12.0, free_turned_back=12.0, back_time=0.1)
 
 @pytest.mark.parametrize("scheduled", [False, True])
 @pytest.mark.parametrize(
-    ("found", "verdict"),
+    ("extremes", "verdict"),
     [
         (STANDS, "sticks"),
         (Extremes(STANDS, driven_time=0.0), "sticks"),  # free gears have moved by more than a tenth
@@ -58,10 +58,10 @@ BACK = Extremes(MOVES, turned_back=12.0, free_turned_back=12.0, back_time=0.1)
         (Extremes(BACK, turned_back=0.0, free_turned_back=0.0, back_time=math.nan), None),
     ],
 )
-def test_standing_is_judged_alike_for_every_torque(found, verdict, scheduled):
+def test_standing_is_judged_alike_for_every_torque(extremes, verdict, scheduled):
     wanted = verdict or ("runs" if scheduled else "turns smoothly")
-    assert gear_verdict(found, "finished", scheduled=scheduled) == wanted
-    assert has_stuck(found) is (verdict in ("sticks", "runs back"))
+    assert gear_verdict(extremes, "finished", scheduled=scheduled) == wanted
+    assert has_stuck(extremes) is (verdict in ("sticks", "runs back"))
 
 
 @pytest.mark.parametrize(
@@ -106,7 +106,7 @@ def test_rollers(kinds, speed, expected):
         np.array(kinds[1:], np.int8),
     ]
     impacts = kinds.count(EventKind.ONSET)
-    found = Extremes(final_speed=speed)
-    assert roller_verdict(found, "finished", impacts, in_touch(pieces)) == expected
-    assert roller_verdict(found, "fold", impacts, in_touch(pieces)) == "unfinished"
+    extremes = Extremes(final_speed=speed)
+    assert roller_verdict(extremes, "finished", impacts, in_touch(pieces)) == expected
+    assert roller_verdict(extremes, "fold", impacts, in_touch(pieces)) == "unfinished"
     assert roller_verdict(None, "finished", impacts, in_touch(pieces)) == "unfinished"

@@ -79,9 +79,9 @@ def file(tmp_path):
 
 @pytest.mark.parametrize(("text", "how"), FILES)
 def test_they_are_read(text, how, file):
-    found = read_signal(file(text), **how)
-    np.testing.assert_allclose(found.time, TIME, rtol=1e-12, atol=1e-18)
-    np.testing.assert_allclose(found.gear_speed, SPEED, rtol=1e-12)
+    signal = read_signal(file(text), **how)
+    np.testing.assert_allclose(signal.time, TIME, rtol=1e-12, atol=1e-18)
+    np.testing.assert_allclose(signal.gear_speed, SPEED, rtol=1e-12)
 
 
 @pytest.mark.parametrize(("text", "how"), FILES)
@@ -113,10 +113,10 @@ def test_what_is_missing_is_named(how, message, file):
 @pytest.mark.parametrize("end", ENDS)
 @pytest.mark.parametrize("name", ["CH1 [rad/s]", "2 [rad/s]"])
 def test_start_and_increment_of_rigol_are_times(end, name, file):
-    found = read_signal(file(rigol(end)), columns=name)
-    np.testing.assert_allclose(found.time, STATED + TIME, rtol=1e-12, atol=1e-18)
-    np.testing.assert_allclose(found.gear_speed, SPEED, rtol=1e-12)
-    assert "samples 10 us apart" in found.attrs["reading"]
+    signal = read_signal(file(rigol(end)), columns=name)
+    np.testing.assert_allclose(signal.time, STATED + TIME, rtol=1e-12, atol=1e-18)
+    np.testing.assert_allclose(signal.gear_speed, SPEED, rtol=1e-12)
+    assert "samples 10 us apart" in signal.attrs["reading"]
 
 
 def test_rigol_with_decimal_commas(file):

@@ -159,18 +159,18 @@ def laboratory(encoding="cp1252"):
 
 @pytest.mark.parametrize("encoding", ["cp1252", "utf-8", "utf-8-sig", "utf-16"])
 @pytest.mark.parametrize(
-    "given",
+    "columns",
     [
         {},
         {"columns": ("Zeit [ms]", "Drehzahl [1/min]")},
         {"skip": 2, "delimiter": ";", "decimal": ",", "columns": ["Zeit [ms]", "Drehzahl [1/min]"]},
     ],
 )
-def test_a_laboratorys_file_needs_no_repair(encoding, given, tmp_path):
+def test_a_laboratorys_file_needs_no_repair(encoding, columns, tmp_path):
     content, missing = laboratory(encoding)
     path = tmp_path / "rig.csv"
     path.write_bytes(content)
-    ds = read_signal(path, bridge=3, **given)
+    ds = read_signal(path, bridge=3, **columns)
     np.testing.assert_allclose(ds.time, TIME, atol=1e-12)
     kept = np.delete(np.arange(64), missing)
     np.testing.assert_allclose(ds.gear_speed[kept], SPEED[kept], rtol=1e-6)
@@ -178,13 +178,13 @@ def test_a_laboratorys_file_needs_no_repair(encoding, given, tmp_path):
     np.testing.assert_allclose(ds.gear_speed[missing], straight, rtol=1e-6)
     said = "semicolons, decimal commas, 2 lines skipped"
     by_unit = (
-        ", 'Zeit [ms]' taken for the time, 'Drehzahl [1/min]' taken for the gear_speed" if not given else ""
+        ", 'Zeit [ms]' taken for the time, 'Drehzahl [1/min]' taken for the gear_speed" if not columns else ""
     )
     assert ds.attrs["reading"] == f"{said}{by_unit}, 6 samples bridged"
     with pytest.raises(
         SceneError, match=r"sample 20 \(0.0002 s\) is missing, within the record \(3 in all\)"
     ):
-        read_signal(path, bridge=2, **given)
+        read_signal(path, bridge=2, **columns)
 
 
 @pytest.mark.parametrize("unit", ["1/min", "min^-1", "U/min", "rpm", "rev/min", "r/min", "tr/min"])
@@ -198,8 +198,8 @@ def test_frames_are_read_by_their_headings():
     speed = SPEED.copy()
     speed[9] = np.nan
     frame = pd.DataFrame({"Zeit [ms]": 1e3 * TIME, "note": "x", "Drehzahl [rpm]": speed * 60 / (2 * np.pi)})
-    for one in (frame, frame.set_index("Zeit [ms]")):
-        ds = read_signal(one, columns=["Zeit [ms]", "Drehzahl [rpm]"], bridge=1)
+    for table in (frame, frame.set_index("Zeit [ms]")):
+        ds = read_signal(table, columns=["Zeit [ms]", "Drehzahl [rpm]"], bridge=1)
         np.testing.assert_allclose(ds.time, TIME, rtol=1e-12)
         np.testing.assert_allclose(np.delete(ds.gear_speed.values, 9), np.delete(SPEED, 9), rtol=1e-12)
         assert ds.attrs["reading"] == "1 sample bridged"
@@ -210,7 +210,7 @@ def test_frames_are_read_by_their_headings():
 
 
 @pytest.mark.parametrize(
-    ("given", "message"),
+    ("settings", "message"),
     [
         ({"columns": "gear_speed"}, "states no distance of its samples"),
         ({"columns": ("a", "b", "c")}, "must be two headings"),
@@ -224,9 +224,9 @@ def test_frames_are_read_by_their_headings():
         ({"bridge": 1.5}, "bridge = 1.5"),
     ],
 )
-def test_bad_settings_are_named(given, message, file):
+def test_bad_settings_are_named(settings, message, file):
     with pytest.raises(SceneError) as caught:
-        read_signal(file(f"time [s],gear_speed [rad/s]\n{rows()}"), **given)
+        read_signal(file(f"time [s],gear_speed [rad/s]\n{rows()}"), **settings)
     assert message in str(caught.value)
 
 
@@ -247,8 +247,8 @@ def test_columns_are_chosen_among_several(file):
 def test_variables_of_a_netcdf_file_are_chosen(tmp_path):
     ds = xr.Dataset({"omega": ("t", SPEED, {"units": "rad/s"})}, {"t": ("t", TIME, {"units": "s"})})
     ds.to_netcdf(tmp_path / "record.nc")
-    found = read_signal(tmp_path / "record.nc", columns=("t", "omega"))
-    np.testing.assert_array_equal(found.gear_speed, SPEED)
+    signal = read_signal(tmp_path / "record.nc", columns=("t", "omega"))
+    np.testing.assert_array_equal(signal.gear_speed, SPEED)
     with pytest.raises(SceneError, match="lacks the variable time"):
         read_signal(tmp_path / "record.nc")
     with pytest.raises(SceneError, match="delimiter = ;: is for text files; this is a netCDF file"):

@@ -29,7 +29,7 @@ def record():
 
 
 def offline(record, chart, count=None):
-    time, speed = (each[:count] for each in record)
+    time, speed = (column[:count] for column in record)
     return assess(xr.DataArray(speed, dims="time", coords={"time": time}), chart)
 
 
@@ -37,7 +37,7 @@ def offline(record, chart, count=None):
 def test_online_is_offline_whatever_the_pieces(size, chart, record):
     online = OnlineAssessment(chart)
     for first in range(0, len(record[0]), size):
-        online.feed(*(each[first : first + size] for each in record))
+        online.feed(*(column[first : first + size] for column in record))
     assert_same(online.estimate, offline(record, chart))
     assert online.estimate.conclusive
     assert online.estimate.low < 0.65 < online.estimate.high
@@ -47,13 +47,13 @@ def test_estimate_follows_each_impact(chart, record):
     """Fed one hundredth of a pitch at a time, it is made anew once a pitch, and narrows."""
     online, after = OnlineAssessment(chart), []
     for first in range(0, len(record[0]), 50):
-        if online.feed(*(each[first : first + 50] for each in record)):
+        if online.feed(*(column[first : first + 50] for column in record)):
             after.append(online.estimate)
             assert_same(after[-1], offline(record, chart, first + 50))
     turned = float(np.trapezoid(record[1], record[0])) / PITCH
     assert len(after) == online.impacts == int(turned)
     assert len(after[-1].frequencies) > len(after[0].frequencies)
-    widths = [each.high - each.low for each in after if each.conclusive]
+    widths = [estimate.high - estimate.low for estimate in after if estimate.conclusive]
     assert len(widths) >= 3
     assert widths[-1] <= widths[0]
 
@@ -65,15 +65,15 @@ def test_samples_one_by_one_and_none(chart, record):
     for time, speed in zip(record[0][:15], record[1][:15], strict=True):
         assert not online.feed(time, speed)
     assert online.estimate.verdict == "no impacts"
-    online.feed(*(each[15:9000] for each in record))
+    online.feed(*(column[15:9000] for column in record))
     assert_same(online.estimate, offline(record, chart, 9000))
 
 
 def test_wrong_pieces_are_refused_and_change_nothing(chart, record):
     online = OnlineAssessment(chart)
-    online.feed(*(each[:9000] for each in record))
+    online.feed(*(column[:9000] for column in record))
     before = online.estimate
-    time, speed = (each[9000:9100] for each in record)
+    time, speed = (column[9000:9100] for column in record)
     for wrong in (
         (time[:50], speed),
         (time[::-1], speed),
@@ -90,9 +90,9 @@ def test_wrong_pieces_are_refused_and_change_nothing(chart, record):
 
 def test_a_gap_in_the_record_is_named(chart, record):
     online = OnlineAssessment(chart)
-    online.feed(*(each[:9000] for each in record))
+    online.feed(*(column[:9000] for column in record))
     with pytest.raises(gd.SceneError, match="off the uniform grid"):
-        online.feed(*(each[9700:18000] for each in record))
+        online.feed(*(column[9700:18000] for column in record))
 
 
 def test_settings_are_those_of_assess(chart):

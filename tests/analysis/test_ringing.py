@@ -39,27 +39,27 @@ def runs():
 @pytest.mark.parametrize("rate", [2e4, 1e5, 3.7e5])
 def test_known_frequencies_are_found_without_events(rate):
     true = [1283.0, 2000.0, 3111.0, 5000.0]
-    found = impact_frequencies(ringing(true, rate), gear_teeth=TEETH)
+    rings = impact_frequencies(ringing(true, rate), gear_teeth=TEETH)
     # the decay and the taper make lines 100 Hz wide; their middle is found far better
-    assert np.allclose(found.frequency[: len(true)], true, rtol=3e-3)
+    assert np.allclose(rings.frequency[: len(true)], true, rtol=3e-3)
     expected = (0.4 + np.arange(4)) * PITCH
-    assert np.abs(found.impact_time[:4] - expected).max() < 0.02 * PITCH
-    assert (np.abs(found.frequency[:4] - true) < 3.0 * found.uncertainty[:4] + 1.0).all()
+    assert np.abs(rings.impact_time[:4] - expected).max() < 0.02 * PITCH
+    assert (np.abs(rings.frequency[:4] - true) < 3.0 * rings.uncertainty[:4] + 1.0).all()
 
 
 def test_ringing_too_fast_for_the_sampling_is_left_out_with_all_that_follows():
-    found = impact_frequencies(ringing([1e3, 2e3, 4e3, 8e3, 16e3], rate=2e4), gear_teeth=TEETH)
-    assert np.isfinite(found.frequency[:4]).all()
-    assert np.isnan(found.frequency[4:]).all()  # 16 kHz would show as 4 kHz
+    rings = impact_frequencies(ringing([1e3, 2e3, 4e3, 8e3, 16e3], rate=2e4), gear_teeth=TEETH)
+    assert np.isfinite(rings.frequency[:4]).all()
+    assert np.isnan(rings.frequency[4:]).all()  # 16 kHz would show as 4 kHz
 
 
 def test_noise_and_steady_running_do_not_ring():
     still = ringing([1e3] * 4, amplitude=0.0)
     for level in (0.0, 1e-16, 1e-3):
         noisy = still + level * np.random.default_rng(1).standard_normal(still.shape)
-        found = characteristic_frequency(noisy, gear_teeth=TEETH)
-        assert np.isnan(found)
-        assert found.impacts == 0
+        frequency = characteristic_frequency(noisy, gear_teeth=TEETH)
+        assert np.isnan(frequency)
+        assert frequency.impacts == 0
 
 
 def test_a_missing_sample_within_a_record_is_named():
@@ -77,36 +77,39 @@ def test_missing_samples_at_the_ends_bound_a_record():
     speed = ringing([1283.0, 2000.0])
     whole = characteristic_frequency(speed[4:-7], gear_teeth=TEETH)
     speed[:4] = speed[-7:] = np.nan
-    found = characteristic_frequency(speed, gear_teeth=TEETH)
-    assert found.item() == pytest.approx(whole.item(), rel=1e-9, abs=0)
-    assert found.uncertainty.item() == pytest.approx(whole.uncertainty.item(), rel=1e-6, abs=0)
+    frequency = characteristic_frequency(speed, gear_teeth=TEETH)
+    assert frequency.item() == pytest.approx(whole.item(), rel=1e-9, abs=0)
+    assert frequency.uncertainty.item() == pytest.approx(whole.uncertainty.item(), rel=1e-6, abs=0)
 
 
 def test_a_running_mean_is_analysed(runs):
     """Over 50 us, which leaves what rings at 1 to 4 kHz."""
     means = runs.isel(sam_fraction=slice(3)).rolling(time=5).mean()
-    found, known = characteristic_frequency(means), characteristic_frequency(runs.isel(sam_fraction=slice(3)))
-    assert np.allclose(found, known, rtol=0.02)
+    frequencies, known = (
+        characteristic_frequency(means),
+        characteristic_frequency(runs.isel(sam_fraction=slice(3))),
+    )
+    assert np.allclose(frequencies, known, rtol=0.02)
 
 
 def test_a_record_with_the_sign_reversed_is_read():
     speed = ringing([1283.0, 2000.0])
-    known, found = (impact_frequencies(sign * speed, gear_teeth=TEETH) for sign in (1, -1))
-    assert found.identical(known)
+    known, reversed_sign = (impact_frequencies(sign * speed, gear_teeth=TEETH) for sign in (1, -1))
+    assert reversed_sign.identical(known)
     spectra = [impact_spectrum(sign * speed, gear_teeth=TEETH) for sign in (1, -1)]
     assert np.allclose(*spectra, rtol=1e-9, equal_nan=True)
     assert impact_windows(-speed, gear_teeth=TEETH).identical(impact_windows(speed, gear_teeth=TEETH))
 
 
 def test_characteristic_frequencies_of_the_low_speed_runs(runs):
-    found = characteristic_frequency(runs)
-    assert found.dims == ("sam_fraction",)
-    assert found.attrs["units"] == found.uncertainty.attrs["units"] == "Hz"
+    frequencies = characteristic_frequency(runs)
+    assert frequencies.dims == ("sam_fraction",)
+    assert frequencies.attrs["units"] == frequencies.uncertainty.attrs["units"] == "Hz"
     low, high = np.array([[1230.0, 1280.0], [1800.0, 2000.0], [3000.0, 6000.0], [6000.0, 17000.0]]).T
-    assert (found.values > low).all()
-    assert (found.values < high).all()
-    assert (found.uncertainty < 0.015 * found).all()
-    assert float(characteristic_frequency(runs.sel(sam_fraction=0.6))) == found.sel(sam_fraction=0.6)
+    assert (frequencies.values > low).all()
+    assert (frequencies.values < high).all()
+    assert (frequencies.uncertainty < 0.015 * frequencies).all()
+    assert float(characteristic_frequency(runs.sel(sam_fraction=0.6))) == frequencies.sel(sam_fraction=0.6)
 
 
 @pytest.mark.parametrize("width", [0.14, 0.28])
@@ -125,10 +128,10 @@ def test_ringing_is_the_resonance_of_the_loaded_pair(fraction, runs):
     changes by 10 % within the window are good for 2 %.
     """
     scene, run = SCENE.replace({"coating.sam_fraction": fraction}), runs.sel(sam_fraction=fraction)
-    windows, found = impact_windows(run), impact_frequencies(run)
-    for number in np.flatnonzero(np.isfinite(found.frequency.values)):
+    windows, rings = impact_windows(run), impact_frequencies(run)
+    for number in np.flatnonzero(np.isfinite(rings.frequency.values)):
         deepest = run.drive_gap.sel(time=slice(0.0, float(windows.window_stop[number]))).min()
-        assert float(found.frequency[number]) == pytest.approx(
+        assert float(rings.frequency[number]) == pytest.approx(
             contact_resonance(scene, float(deepest)), rel=0.03, abs=0
         )
 
@@ -145,9 +148,9 @@ def test_windows_from_events_and_from_the_speed_agree(runs):
     for fraction in (1.0, 0.8, 0.6):
         run = runs.sel(sam_fraction=fraction)
         known = impact_windows(run)
-        found = impact_windows(run.gear_speed.drop_attrs(), gear_teeth=TEETH)
-        assert known.attrs["source"] != found.attrs["source"]
-        late = (found.impact_time - known.impact_time)[:5]
+        windows = impact_windows(run.gear_speed.drop_attrs(), gear_teeth=TEETH)
+        assert known.attrs["source"] != windows.attrs["source"]
+        late = (windows.impact_time - known.impact_time)[:5]
         assert np.abs(late).max() < 0.03 * PITCH
         lengths = (known.window_stop - known.window_start).dropna("impact")
         assert np.allclose(lengths, 0.22 * PITCH, rtol=0.05)  # the gear is a little slower after an impact
@@ -157,10 +160,10 @@ def test_impact_spectrum_peaks_at_the_ring(runs):
     density = impact_spectrum(runs.sel(sam_fraction=[0.8, 0.6]))
     assert density.dims == ("sam_fraction", "impact", "frequency")
     for fraction in (0.8, 0.6):
-        one = density.sel(sam_fraction=fraction, impact=1).sel(frequency=slice(1e3, None))
+        spectrum = density.sel(sam_fraction=fraction, impact=1).sel(frequency=slice(1e3, None))
         ring = impact_frequencies(runs.sel(sam_fraction=fraction)).frequency[1]
-        assert float(one.frequency[one.values.argmax()]) == pytest.approx(
-            float(ring), abs=float(one.frequency.diff("frequency")[0])
+        assert float(spectrum.frequency[spectrum.values.argmax()]) == pytest.approx(
+            float(ring), abs=float(spectrum.frequency.diff("frequency")[0])
         )
 
 

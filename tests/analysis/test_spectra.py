@@ -76,8 +76,8 @@ def test_runs_of_a_sweep_keep_their_labels_and_short_ones_are_nan():
         assert list(density.sam_fraction.values) == [1.0, 0.5]
         assert np.isnan(density.sel(sam_fraction=0.5, torque=3.0)).all()
         assert np.isfinite(density.sel(sam_fraction=1.0)).all()
-    one = power_spectrum(both.sel(sam_fraction=1.0, torque=2.0))
-    assert np.array_equal(one, power_spectrum(both).sel(sam_fraction=1.0, torque=2.0))
+    spectrum = power_spectrum(both.sel(sam_fraction=1.0, torque=2.0))
+    assert np.array_equal(spectrum, power_spectrum(both).sel(sam_fraction=1.0, torque=2.0))
 
 
 def gap_in_time():
@@ -113,8 +113,10 @@ def test_overlap_is_checked():
 def test_a_record_that_is_sampled_too_slowly_for_its_contact_warns_with_both_frequencies(spectrum):
     scene = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 0.02, "run.samples": "2 kHz"})
     slow = gd.simulate(scene)
-    own = gd.analysis.contact_resonance(scene)
-    with pytest.warns(UserWarning, match=f"sampling at 2000 Hz .* contact, {own / 1e3:.0f}.* Hz") as caught:
+    resonance = gd.analysis.contact_resonance(scene)
+    with pytest.warns(
+        UserWarning, match=f"sampling at 2000 Hz .* contact, {resonance / 1e3:.0f}.* Hz"
+    ) as caught:
         spectrum(slow, segment=0.01)
     assert caught[0].filename == __file__
     spectrum(gd.simulate(scene, samples="4 kHz"), segment=0.01)

@@ -123,7 +123,7 @@ STUCK = {"stick_time": 0.2124, "stick_exits": 4, "mesh_exits": 9, "reversals": 3
 
 
 @pytest.mark.parametrize(
-    ("found", "verdict", "words"),
+    ("extremes", "verdict", "words"),
     [
         ({}, "turns smoothly", "turned smoothly through 5 mesh exits in 0.3 s"),
         (STUCK, "sticks", "sticks at 0.212 s (4 mesh exits)"),
@@ -152,8 +152,8 @@ STUCK = {"stick_time": 0.2124, "stick_exits": 4, "mesh_exits": 9, "reversals": 3
         ),
     ],
 )
-def test_a_verdict_follows_from_the_extremes_and_not_from_the_samples(found, verdict, words):
-    solution = dataclasses.replace(solution_of(LOW), extremes=Extremes(EXTREMES, **found))
+def test_a_verdict_follows_from_the_extremes_and_not_from_the_samples(extremes, verdict, words):
+    solution = dataclasses.replace(solution_of(LOW), extremes=Extremes(EXTREMES, **extremes))
     solution.samples["gear_speed"] = np.full(len(solution.time), -3.0)
     (outcome,) = outcomes(to_dataset(LOW, solution))
     assert (outcome.verdict, outcome.words) == (verdict, words)
@@ -174,11 +174,11 @@ def test_impacts_are_counted_run_by_run():
     scenes = [LOW.replace({"coating.sam_fraction": fraction}) for fraction in fractions]
     solutions = [solution_of(scene, impacts=count) for scene, count in zip(scenes, (2, 7), strict=True)]
     ds = combine(LOW, {"coating.sam_fraction": fractions}, scenes, solutions)
-    assert [(one.label, one.impacts) for one in outcomes(ds)] == [
+    assert [(outcome.label, outcome.impacts) for outcome in outcomes(ds)] == [
         ({"sam_fraction": 1.0}, 2),
         ({"sam_fraction": 0.5}, 7),
     ]
-    assert [one.impacts for one in outcomes(ds.sel(sam_fraction=0.5))] == [7]
+    assert [outcome.impacts for outcome in outcomes(ds.sel(sam_fraction=0.5))] == [7]
 
 
 def roller_run(speed, force, *, impacts, lets_go):

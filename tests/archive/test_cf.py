@@ -68,7 +68,7 @@ def test_coordinate_variables_have_no_gaps_and_no_order_broken(file):
 
 
 def test_flags_have_a_meaning_for_each_value(file):
-    flags = [each for each in file.variables.values() if "flag_meanings" in each.ncattrs()]
+    flags = [flag for flag in file.variables.values() if "flag_meanings" in flag.ncattrs()]
     assert len(flags) == (3 if "passage" in file.dimensions else 2)
     for variable in flags:
         assert variable.flag_values.dtype == variable.dtype

@@ -208,12 +208,12 @@ def test_exposures_are_joined_and_picked():
     assert swept.sliding_work.dims == ("sam_fraction", "torque", "flank", "tooth", "place")
     assert float(swept.sliding_work.sum()) > 0.0
     same(gd.concat([swept.isel(sam_fraction=[0]), swept.isel(sam_fraction=[1])], KEY), swept)
-    same(gd.concat([swept.sel(torque=[each]) for each in TORQUES], "torque"), swept)
-    one = swept.sel(torque=TORQUES[1], sam_fraction=0.5)
+    same(gd.concat([swept.sel(torque=[torque]) for torque in TORQUES], "torque"), swept)
+    run = swept.sel(torque=TORQUES[1], sam_fraction=0.5)
     alone = gd.simulate(EXPOSED.replace({KEY: 0.5, "drive.torque": TORQUES[1]}))
-    np.testing.assert_array_equal(one.gearidae.run().event_time, alone.event_time)
+    np.testing.assert_array_equal(run.gearidae.run().event_time, alone.event_time)
     for name in ("sliding_work", "adhesion_work", "flank_area", "place"):
-        np.testing.assert_array_equal(one[name], alone[name])
+        np.testing.assert_array_equal(run[name], alone[name])
 
 
 def test_a_chain_has_the_exposures_of_its_last_run():

@@ -67,7 +67,10 @@ ROLLER_LAYOUT = {
 
 
 def layout_of(ds: xr.Dataset) -> dict[str, tuple[str, str]]:
-    return {str(name): (*map(str, each.dims), each.attrs["units"]) for name, each in ds.data_vars.items()}
+    return {
+        str(name): (*map(str, variable.dims), variable.attrs["units"])
+        for name, variable in ds.data_vars.items()
+    }
 
 
 def test_catalogue_knows_every_column_of_the_engine():
@@ -194,8 +197,8 @@ def test_product_of_two_keys(make_solution):
     assert ds.gear_speed.dims == ("sam_fraction", "torque", "time")
     assert ds.torque.attrs["units"] == "N m"
     for number, (fraction, torque) in enumerate(itertools.product(*swept.values())):
-        own = (ds.event_sam_fraction == fraction) & (ds.event_torque == torque)
-        assert own.sum() == 2 * number
+        of_run = (ds.event_sam_fraction == fraction) & (ds.event_torque == torque)
+        assert of_run.sum() == 2 * number
         chosen = ds.gear_speed.sel(sam_fraction=fraction, torque=torque)
         assert np.array_equal(chosen, solutions[number].samples["gear_speed"])
 

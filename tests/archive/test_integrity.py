@@ -40,7 +40,9 @@ def first_bytes(path):
     with xr.open_dataset(path, decode_times=False) as ds:
         values = {name: ds[name].values.tobytes() for name in ds.variables if ds[name].dtype.kind == "f"}
     return {
-        name: content.find(one) for name, one in values.items() if len(one) > 8 and content.count(one) == 1
+        name: content.find(value)
+        for name, value in values.items()
+        if len(value) > 8 and content.count(value) == 1
     }
 
 
@@ -52,15 +54,27 @@ def flipped(path, place, bit):
     return other
 
 
-TEXTS = {"status", "message", "backend", "method", "skipped", "scene", *(each.name for each in CONTACT)}
+TEXTS = {
+    "status",
+    "message",
+    "backend",
+    "method",
+    "skipped",
+    "scene",
+    *(quantity.name for quantity in CONTACT),
+}
 """Of each run of a sweep, of varying length."""
 
 
 @pytest.mark.parametrize("kind", ["single", "swept", "streamed"])
 def test_every_variable_along_a_dimension_carries_a_checksum(archives, kind):
     with netCDF4.Dataset(archives[kind]) as file:
-        plain = {name for name, one in file.variables.items() if not (one.filters() or {}).get("fletcher32")}
-        single = {name for name, one in file.variables.items() if not one.dimensions}
+        plain = {
+            name
+            for name, variable in file.variables.items()
+            if not (variable.filters() or {}).get("fletcher32")
+        }
+        single = {name for name, variable in file.variables.items() if not variable.dimensions}
         assert "sam_fraction" in single or kind == "swept"
         assert plain == (TEXTS if kind == "swept" else single)
 

@@ -231,8 +231,8 @@ def test_a_chunk_that_is_too_large_is_refused(tmp_path):
     with netCDF4.Dataset(tmp_path / "large.nc", "w") as file:
         file.createDimension("time", None)
         for name in ("time", "gear_speed"):
-            one = file.createVariable(name, "f8", ("time",), chunksizes=(2**28,), zlib=True)
-            one.units = "s"
+            variable = file.createVariable(name, "f8", ("time",), chunksizes=(2**28,), zlib=True)
+            variable.units = "s"
     with pytest.raises(gd.SceneError, match=r"declares 4\.29 GB"):
         gd.analysis.read_signal(tmp_path / "large.nc")
 
@@ -242,7 +242,9 @@ def test_what_compression_shrinks_most_is_read(tmp_path):
     path = tmp_path / "zeros.nc"
     with netCDF4.Dataset(path, "w") as file:
         file.createDimension("time", 20_000_000)
-        one = file.createVariable("rest", "f8", ("time",), zlib=True, complevel=9, chunksizes=(20_000_000,))
-        one[:] = np.zeros(20_000_000)
+        variable = file.createVariable(
+            "rest", "f8", ("time",), zlib=True, complevel=9, chunksizes=(20_000_000,)
+        )
+        variable[:] = np.zeros(20_000_000)
     assert path.stat().st_size < 170_000
     assert loaded(path).rest.size == 20_000_000

@@ -127,7 +127,7 @@ def test_a_failed_write_leaves_the_old_archive_and_no_litter(single, tmp_path, m
     with pytest.raises(gd.SceneError, match="No space left on device"):
         save(single, path, overwrite=True)
     assert path.read_bytes() == before
-    assert [each.name for each in tmp_path.iterdir()] == ["run.nc"]
+    assert [entry.name for entry in tmp_path.iterdir()] == ["run.nc"]
 
 
 def test_links_are_followed(single, tmp_path):

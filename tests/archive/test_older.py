@@ -12,7 +12,7 @@ from gearidae.archive.select import scene_of
 from gearidae.archive.variables import ENERGY_BALANCE
 from gearidae.records.energy import TERMS
 
-LATER = [name for name, each in TERMS.items() if each.since]
+LATER = [name for name, term in TERMS.items() if term.since]
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": "2 ms", "run.samples": 11})
 ROLLER = gd.preset("roller_slow").replace({"run.samples": 11})
 
@@ -27,34 +27,34 @@ def of_version_0_1(ds):
 def test_the_energy_balance_of_a_run_becomes_variables(scene, tmp_path):
     ds = gd.simulate(scene)
     save(of_version_0_1(ds), tmp_path / "old.nc")
-    found = gd.open_archive(tmp_path / "old.nc")
-    assert "energy_balance" not in found.attrs
-    assert found.gearidae.energy_balance == ds.gearidae.energy_balance
+    opened = gd.open_archive(tmp_path / "old.nc")
+    assert "energy_balance" not in opened.attrs
+    assert opened.gearidae.energy_balance == ds.gearidae.energy_balance
     for name in ("reached", *ENERGY_BALANCE):
-        assert found[name].identical(ds[name]), name
+        assert opened[name].identical(ds[name]), name
 
 
 def test_a_run_without_a_balance_has_reached_its_last_sample(tmp_path):
     ds = gd.simulate(LOW.replace({"run.balance": False}))
     save(ds.drop_vars("reached"), tmp_path / "old.nc")
-    found = gd.open_archive(tmp_path / "old.nc")
-    assert float(found.reached) == float(ds.time[-1])
-    assert found.gearidae.energy_balance is None
+    opened = gd.open_archive(tmp_path / "old.nc")
+    assert float(opened.reached) == float(ds.time[-1])
+    assert opened.gearidae.energy_balance is None
 
 
 def test_losses_that_a_sweep_did_not_know_are_zero(tmp_path):
     ds = gd.sweep(LOW, {"coating.sam_fraction": [1.0, 0.5]})
     save(ds.drop_vars(LATER), tmp_path / "old.nc")
-    found = gd.open_archive(tmp_path / "old.nc")
+    opened = gd.open_archive(tmp_path / "old.nc")
     for name in ENERGY_BALANCE:
-        assert found[name].identical(ds[name]), name
+        assert opened[name].identical(ds[name]), name
 
 
 def test_a_sweep_that_kept_single_energies_has_these_only(tmp_path):
     ds = gd.sweep(LOW, {"coating.sam_fraction": [1.0, 0.5]}, keep=["drive_work"])
     save(ds, tmp_path / "kept.nc")
-    found = gd.open_archive(tmp_path / "kept.nc")
-    assert set(found.data_vars) & set(ENERGY_BALANCE) == {"drive_work"}
+    opened = gd.open_archive(tmp_path / "kept.nc")
+    assert set(opened.data_vars) & set(ENERGY_BALANCE) == {"drive_work"}
 
 
 @pytest.mark.parametrize("text", ["[", "3", '{"drive_work": "much"}', '{"drive_work": 1.0}'])
@@ -91,8 +91,12 @@ def test_older_names_of_the_contact_are_read_without_a_word(caplog):
     del scene["contact"]["bodies"], scene["contact"]["roughness"]
     scene["contact"] |= {"model": "population", "friction_law": "net", "friction": 0.1}
     ds = xr.Dataset(attrs={"scene": json.dumps(scene)})
-    found = scene_of(ds)["contact"]
-    assert (found["bodies"], found["roughness"], found["friction_law"]) == ("rigid", "discrete", "coulomb")
-    assert "model" not in found
+    contact = scene_of(ds)["contact"]
+    assert (contact["bodies"], contact["roughness"], contact["friction_law"]) == (
+        "rigid",
+        "discrete",
+        "coulomb",
+    )
+    assert "model" not in contact
     assert gd.Scene.from_dict(scene_of(ds)).contact.is_discrete
     assert not caplog.messages

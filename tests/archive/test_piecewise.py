@@ -45,16 +45,16 @@ def lengths(monkeypatch):
         (page_module, "pack_runs", partial(pack_runs, most_states=300)),  # which take the most time
     ):
         monkeypatch.setattr(module, name, value)
-    found = []
+    sizes = []
     read = NetCDF4ArrayWrapper._getitem
 
     def watched(self, key):
         values = read(self, key)
-        found.append(np.size(values))
+        sizes.append(np.size(values))
         return values
 
     monkeypatch.setattr(NetCDF4ArrayWrapper, "_getitem", watched)
-    return found
+    return sizes
 
 
 @pytest.fixture
@@ -118,9 +118,13 @@ def test_pieces(size, monkeypatch):
     values = np.random.default_rng(3).normal(size=1000)
     values[900:] = np.nan
     array = xr.DataArray(values, dims="time")
-    found = pieces.spread(array, 5, 950)
-    assert (found.number, found.low, found.high) == (895, values[5:900].min(), values[5:900].max())
-    assert found.mean == pytest.approx(values[5:900].mean(), rel=1e-12, abs=0)
+    statistics = pieces.spread(array, 5, 950)
+    assert (statistics.number, statistics.low, statistics.high) == (
+        895,
+        values[5:900].min(),
+        values[5:900].max(),
+    )
+    assert statistics.mean == pytest.approx(values[5:900].mean(), rel=1e-12, abs=0)
     assert pieces.reached(array) == 900
     assert pieces.reached(array[:700]) == 700
     assert pieces.reached(array.shift(time=3)) == 903

@@ -53,6 +53,6 @@ def test_an_archive_is_written_and_read_without_what_linux_alone_has(tmp_path):
         check=False,
     )
     assert done.returncode == 0, done.stderr
-    assert [one.name for one in tmp_path.iterdir()] == ["run.nc"]
+    assert [entry.name for entry in tmp_path.iterdir()] == ["run.nc"]
     here = gd.simulate(gd.preset("roller_slow").replace({"run.samples": 101}), backend="sksundae")
     xr.testing.assert_identical(gd.open_archive(path).force, here.force)

@@ -61,9 +61,9 @@ def test_the_table_of_passages(sweep):
     table = ds.gearidae.passages()
     assert len(table) == sum(IMPACTS)
     assert set(table["flank"].cat.categories) == {"none", "drive", "coast"}
-    one = table.query("sam_fraction == 1.0 and torque == 5e-18")
-    np.testing.assert_array_equal(one["adhesion_loss"], solutions[1].passages.adhesion_loss)
-    np.testing.assert_array_equal(one["tooth"], solutions[1].passages.pair % LOW.gears.pinion_teeth)
+    rows = table.query("sam_fraction == 1.0 and torque == 5e-18")
+    np.testing.assert_array_equal(rows["adhesion_loss"], solutions[1].passages.adhesion_loss)
+    np.testing.assert_array_equal(rows["tooth"], solutions[1].passages.pair % LOW.gears.pinion_teeth)
     assert "passages()" in repr(ds.gearidae)
 
 
@@ -73,7 +73,7 @@ def test_which_scenes_have_passages(make_solution):
     assert "passage" not in to_dataset(ROLLER, make_solution(ROLLER)).dims
     assert "passage" not in to_dataset(off, make_solution(off)).dims
     scenes = [LOW, off]
-    both = combine(LOW, {"run.passages": [True, False]}, scenes, [make_solution(each) for each in scenes])
+    both = combine(LOW, {"run.passages": [True, False]}, scenes, [make_solution(scene) for scene in scenes])
     assert both.sizes["passage"] == 3
     with pytest.raises(gd.SceneError, match="passages"):
         to_dataset(off, make_solution(off)).gearidae.passages()

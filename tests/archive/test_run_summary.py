@@ -198,18 +198,20 @@ def test_the_extremes_of_an_unfinished_run_are_those_of_its_newest_checkpoint(tm
     with pytest.raises(gd.Interrupted) as cut:
         gd.simulate(scene, archive=tmp_path / "run.nc", on_block=stop)
     ds = cut.value.dataset
-    found = extremes_of(ds)
+    extremes = extremes_of(ds)
     expected = engine.kept_at(scene, end_state_of(ds.attrs)[0])[1]
-    numbers = {name: one for name, one in expected.items() if name not in ("exposures", "standstill_list")}
-    assert {name: getattr(found, name) for name in numbers} == pytest.approx(
+    numbers = {
+        name: value for name, value in expected.items() if name not in ("exposures", "standstill_list")
+    }
+    assert {name: getattr(extremes, name) for name in numbers} == pytest.approx(
         numbers, rel=1e-12, abs=0, nan_ok=True
     )
     told = account(ds)
-    assert (told.top_speed, told.time_adhering) == (found.max_gear_speed, found.time_adhering)
+    assert (told.top_speed, told.time_adhering) == (extremes.max_gear_speed, extremes.time_adhering)
     (outcome,) = gd.outcomes(ds)
-    assert outcome.max_speed == found.max_gear_speed
+    assert outcome.max_speed == extremes.max_gear_speed
     assert outcome.verdict == "sticks"
-    assert outcome.stick_time == found.stick_time
+    assert outcome.stick_time == extremes.stick_time
 
 
 def test_what_friction_takes_and_holds():
@@ -240,8 +242,8 @@ def test_what_friction_takes_and_holds():
     assert 0.0 < told.friction_loss == kept["drive_friction_loss"] + kept["coast_friction_loss"]
     lost = told.drag_loss + told.dry_loss + told.damping_loss + told.adhesion_loss + told.friction_loss
     assert told.efficiency == pytest.approx((told.drag_loss + told.dry_loss) / lost, rel=1e-12)
-    given = told.drive_work - told.kinetic_change
-    assert lost + told.contact_loss - told.adhesion_loss == pytest.approx(given, rel=1e-4, abs=0.0)
+    supplied = told.drive_work - told.kinetic_change
+    assert lost + told.contact_loss - told.adhesion_loss == pytest.approx(supplied, rel=1e-4, abs=0.0)
     waiting = {"initial.gear_speed": 0.0, "drive.torque": 1e-14, "initial.gap": 1e-7, "run.duration": 1e-7}
     still = account(gd.simulate(scene.replace(waiting)))
     assert still.held_by == "dry resistance"  # the pinion moves

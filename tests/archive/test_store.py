@@ -94,10 +94,10 @@ def test_checkpoints(tmp_path):
     point = Checkpoint({"time": 3, "event": 4}, 0.1, 0.2, Statistics(steps=7, restarts=2), state)
     assert Checkpoint.newest(archive, "one") is None
     point.keep(archive, "one")
-    found = Checkpoint.newest(archive, "one")
-    assert found.state.tobytes() == state.tobytes()
-    assert (found.lengths, found.time, found.wall_time) == (point.lengths, 0.1, 0.2)
-    assert found.statistics == point.statistics
+    newest = Checkpoint.newest(archive, "one")
+    assert newest.state.tobytes() == state.tobytes()
+    assert (newest.lengths, newest.time, newest.wall_time) == (point.lengths, 0.1, 0.2)
+    assert newest.statistics == point.statistics
     assert Checkpoint.newest(archive, "other") is None  # of a run that this one has replaced
     (path,) = Store(archive).folder.iterdir()
     path.write_bytes(b"damaged")

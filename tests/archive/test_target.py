@@ -68,8 +68,8 @@ def fifo(path):
 
 
 def bound(path):
-    with socket.socket(socket.AF_UNIX) as one:
-        one.bind(str(path))
+    with socket.socket(socket.AF_UNIX) as server:
+        server.bind(str(path))
 
 
 def device(path):
@@ -97,7 +97,7 @@ def test_what_is_no_regular_file_is_never_replaced(kind, product, single, tmp_pa
             products(single)[product](path, **how)
     after = os.lstat(path)
     assert (after.st_mode, after.st_ino, after.st_rdev) == (before.st_mode, before.st_ino, before.st_rdev)
-    assert {each.name for each in tmp_path.iterdir()} <= {"out.png", "there"}
+    assert {entry.name for entry in tmp_path.iterdir()} <= {"out.png", "there"}
 
 
 @pytest.mark.parametrize(
@@ -144,7 +144,7 @@ def test_what_another_writes_is_refused_before_anything_runs(product, there, sin
     with pytest.raises(gd.SceneError, match="is being written by another run"):
         products(single)[product](path, overwrite=there)
     held.release()
-    assert [each.read_bytes() for each in tmp_path.iterdir()] == ([b"precious"] if there else [])
+    assert [entry.read_bytes() for entry in tmp_path.iterdir()] == ([b"precious"] if there else [])
 
 
 @pytest.mark.parametrize("other", ["sweep", "ensemble", "simulate", "save"])
@@ -168,7 +168,7 @@ def test_a_sweep_keeps_its_archive_and_the_folder_beside_it(other, single, tmp_p
     ds = gd.sweep(LOW, FRACTIONS, archive=path, jobs=1, progress=look)
     assert len(refused) == 2
     assert gd.open_archive(path).identical(ds)
-    assert [each.name for each in tmp_path.iterdir()] == ["out.nc"]
+    assert [entry.name for entry in tmp_path.iterdir()] == ["out.nc"]
 
 
 def test_a_sweep_that_ends_early_leaves_no_claim(tmp_path):
@@ -201,7 +201,7 @@ def test_looking_and_replacing_are_one_step(single, tmp_path, monkeypatch):
 
     monkeypatch.setattr(target, "sync", late)
     write_report(single, path)
-    assert [each.name for each in tmp_path.iterdir()] == ["out.html"]
+    assert [entry.name for entry in tmp_path.iterdir()] == ["out.html"]
 
 
 # -- names -----------------------------------------------------------------------------------------------------------
@@ -223,7 +223,7 @@ def test_the_longest_name_that_is_taken_can_be_written(tmp_path):
     ds = gd.sweep(LOW, FRACTIONS, archive=path, jobs=1)
     assert gd.open_archive(path).identical(ds)
     gd.simulate(LOW, archive=path, overwrite=True)
-    assert [each.name for each in tmp_path.iterdir()] == [path.name]
+    assert [entry.name for entry in tmp_path.iterdir()] == [path.name]
 
 
 def _taken(path):

@@ -43,14 +43,14 @@ def attempt(ds, label, **options):
 @given(LABELS, METHODS, st.one_of(st.none(), st.floats(0.0, 1.0)))
 def test_single_times(label, method, tolerance):
     options = {} if method is None else {"method": method, "tolerance": tolerance}
-    wanted, found = attempt(plain(), label, **options), attempt(looked_up(), label, **options)
-    if wanted is None or found is None:
-        assert wanted is found
+    wanted, answer = attempt(plain(), label, **options), attempt(looked_up(), label, **options)
+    if wanted is None or answer is None:
+        assert wanted is answer
     elif method == "nearest":  # halfway between two, either is nearest
-        distances = [abs(TIMES[int(value)] - label) for value in (wanted, found)]
+        distances = [abs(TIMES[int(value)] - label) for value in (wanted, answer)]
         assert distances[0] == pytest.approx(distances[1], rel=0, abs=1e-15)
     else:
-        assert wanted == found
+        assert wanted == answer
 
 
 @given(st.one_of(st.none(), LABELS), st.one_of(st.none(), LABELS))
@@ -101,15 +101,15 @@ PARTS = st.tuples(st.integers(0, 30), st.integers(1, 31)).map(
 
 
 @given(PARTS, PARTS, st.sampled_from(["inner", "outer", "left", "right"]))
-def test_alignment(one, other, how):
+def test_alignment(first, second, how):
     """Two archives, or parts of them, are aligned as they would be in memory."""
 
     def aligned(ds, file):
-        return xr.align(file(ds, one), file(ds, other), join=how)
+        return xr.align(file(ds, first), file(ds, second), join=how)
 
-    found = aligned(plain(), lambda ds, part: _in_file(ds.isel(time=part)))
+    results = aligned(plain(), lambda ds, part: _in_file(ds.isel(time=part)))
     wanted = aligned(plain(), lambda ds, part: ds.isel(time=part))
-    for mine, theirs in zip(found, wanted, strict=True):
+    for mine, theirs in zip(results, wanted, strict=True):
         np.testing.assert_array_equal(mine["time"], theirs["time"])
         np.testing.assert_array_equal(mine["speed"], theirs["speed"])
 
@@ -118,8 +118,8 @@ def test_alignment(one, other, how):
 def test_reindexing_like_another(part, method):
     coarse = plain().isel(time=part)
     coarse = coarse.assign_coords(time=coarse["time"] + 0.01 if method else coarse["time"])
-    found = looked_up().reindex_like(_in_file(coarse), method=method)
-    np.testing.assert_array_equal(found["speed"], plain().reindex_like(coarse, method=method)["speed"])
+    result = looked_up().reindex_like(_in_file(coarse), method=method)
+    np.testing.assert_array_equal(result["speed"], plain().reindex_like(coarse, method=method)["speed"])
 
 
 def test_another_kind_of_index_is_told_how_to_be_met():

@@ -72,13 +72,13 @@ def by_equations(zone, displacement):
         return a * a - 4 / 3 * zone * a * t - displacement
 
     m = 1 + np.geomspace(1e-5, 1e4, 4000)
-    values = np.array([excess(one) for one in m])
+    values = np.array([excess(ratio) for ratio in m])
     crossing = np.flatnonzero((values[:-1] > 0) & (values[1:] <= 0))
     if crossing.size == 0:
         return None
-    found = optimize.brentq(excess, m[crossing[0]], m[crossing[0] + 1], xtol=1e-14, rtol=1e-14)
-    a, t, q = radius(found)
-    return a**3 - zone * a * a * (t + found**2 * q)
+    root = optimize.brentq(excess, m[crossing[0]], m[crossing[0] + 1], xtol=1e-14, rtol=1e-14)
+    a, t, q = radius(root)
+    return a**3 - zone * a * a * (t + root**2 * q)
 
 
 @pytest.mark.parametrize("zone", [0.1157, 0.9487, 5.785, 23.14])
@@ -143,7 +143,7 @@ def test_force_table_against_quadrature(length, zone):
         lambda e: 2 * e * float(law.load(e * e - law.detach)) * float(psi(gap[0] + e * e - law.detach)),
         first,
         top,
-        points=[one for one in bend if one > first],
+        points=[place for place in bend if place > first],
         epsabs=0,
         epsrel=1e-10,
         limit=300,

@@ -25,14 +25,16 @@ def test_a_ratio_is_that_of_the_times_of_steps(monkeypatch):
 
 
 def test_exposures_leave_the_steps_alone():
-    given = next(each for each in COMPARISONS if each.title == "exposures, low speed, 30%")
-    short = [scene.replace({"run.duration": 1e-3}) for scene in (given.plain, given.other)]
-    cost = measure_option(Comparison(given.title, *short), 1)
+    comparison = next(
+        comparison for comparison in COMPARISONS if comparison.title == "exposures, low speed, 30%"
+    )
+    short = [scene.replace({"run.duration": 1e-3}) for scene in (comparison.plain, comparison.other)]
+    cost = measure_option(Comparison(comparison.title, *short), 1)
     assert cost.steps == cost.other_steps > 100
 
 
 def test_tables_are_of_the_uniform_fraction():
-    for each in COMPARISONS:
-        coating, plain = each.other.coating, each.plain.coating
+    for comparison in COMPARISONS:
+        coating, plain = comparison.other.coating, comparison.plain.coating
         assert coating.fractions == pytest.approx(plain.fractions, abs=1e-15)
-        assert coating.by_place == each.title.startswith("table")
+        assert coating.by_place == comparison.title.startswith("table")

@@ -41,8 +41,8 @@ def expected():
     )
 
 
-def calibrate(*given, code=0):
-    assert main(["calibrate", CASE, "--vary", PRIOR, "--points", "5", "--jobs", "1", *given]) == code
+def calibrate(*arguments, code=0):
+    assert main(["calibrate", CASE, "--vary", PRIOR, "--points", "5", "--jobs", "1", *arguments]) == code
 
 
 def test_a_posterior_is_written_shown_drawn_and_predicted_from(folder, expected, capsys):
@@ -51,8 +51,8 @@ def test_a_posterior_is_written_shown_drawn_and_predicted_from(folder, expected,
     assert printed.err == "the most likely coating.sam_fraction is at the edge of its prior\n"
     row = next(line for line in printed.out.splitlines() if "coating.sam_fraction" in line and "+-" in line)
     assert f"{float(expected['mean'][0]):.4g} +- {float(expected.standard_deviation[0]):.4g}" in row
-    found = gd.studies.open_posterior(f"{CASE}_posterior.nc")
-    xr.testing.assert_equal(found, expected)
+    posterior = gd.studies.open_posterior(f"{CASE}_posterior.nc")
+    xr.testing.assert_equal(posterior, expected)
     assert [path.name for path in folder.iterdir()] == [f"{CASE}_posterior.nc"]
 
     assert main(["plot", f"{CASE}_posterior.nc", "-o", "posterior.png"]) == 0
@@ -81,9 +81,9 @@ def test_observations_of_a_file_are_the_same(folder, expected):
         (folder / name).write_text(text)
     assert gd.studies.read_observations("seen.csv") == gd.studies.read_observations("seen.toml")
     calibrate("--observations", "seen.toml", "-q")
-    found = gd.studies.open_posterior(f"{CASE}_posterior.nc")
-    xr.testing.assert_equal(found, expected)
-    assert found.attrs["calibration"] == expected.attrs["calibration"]
+    posterior = gd.studies.open_posterior(f"{CASE}_posterior.nc")
+    xr.testing.assert_equal(posterior, expected)
+    assert posterior.attrs["calibration"] == expected.attrs["calibration"]
 
 
 def test_ctrl_c_keeps_the_runs_and_it_goes_on(folder, expected, monkeypatch, capsys):
@@ -131,7 +131,7 @@ def test_cells_of_a_spreadsheet(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("given", "words"),
+    ("arguments", "words"),
     [
         ([], "give what was observed"),
         (["--seen", "sticks"], "must read figure=value"),
@@ -154,7 +154,7 @@ def test_cells_of_a_spreadsheet(tmp_path):
         (["--seen", "sticks=true", "--points", "2"], "points"),
     ],
 )
-def test_what_is_wrong_is_told_in_a_line_and_nothing_is_run(folder, given, words, monkeypatch, capsys):
+def test_what_is_wrong_is_told_in_a_line_and_nothing_is_run(folder, arguments, words, monkeypatch, capsys):
     monkeypatch.setattr("gearidae.engine.solve", None)
     (folder / "seen.txt").write_text("")
     (folder / "empty.csv").write_text("of, value\n")
@@ -162,7 +162,7 @@ def test_what_is_wrong_is_told_in_a_line_and_nothing_is_run(folder, given, words
     (folder / "short.csv").write_text("of, value\nsticks, true, 3\n")
     (folder / "bad.toml").write_text("[[observation]\n")
     (folder / "other.toml").write_text("[drive]\ntorque = 1\n")
-    assert main(["calibrate", CASE, "--vary", PRIOR, *given]) == 2
+    assert main(["calibrate", CASE, "--vary", PRIOR, *arguments]) == 2
     error = capsys.readouterr().err
     assert words in error
     assert error.count("\n") == 1

@@ -57,7 +57,7 @@ VARY = "coating.sam_fraction=uniform(0.7, 0.8)"
         (["sweep", "run_down", "--over", "coating.sam_fraction=0.8,0.7", *SHORT], "run_down.nc"),
         (["ensemble", "high_speed", "--vary", VARY, "--size", "2", *SHORT], "high_speed_ensemble.nc"),
     ],
-    ids=lambda each: each if isinstance(each, str) else each[0],
+    ids=lambda words: words if isinstance(words, str) else words[0],
 )  # fmt: skip
 def test_commands_take_shipped_names(arguments, output, folder):
     assert main(arguments) == 0

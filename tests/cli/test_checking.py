@@ -116,15 +116,15 @@ def test_smallest_speed_of_a_gear_at_rest_is_zero(capfd):
 )
 def test_digits_tell_the_ends_of_a_bracket_apart(sticks, passes, shown):
     unit = "1" if sticks > 1e-3 else "N m"
-    found = xr.Dataset(
+    ds = xr.Dataset(
         {
             name: ("exits", [value])
             for name, value in (("limit", passes), ("sticks", sticks), ("passes", passes))
         },
         {"exits": [100], "run": [0.0]},
     )
-    found["limit"].attrs.update(units=unit, long_name="sticking limit of drive.torque")
-    assert any(shown in remark for _, _, remark in answer(found, "sticking_threshold").rows)
+    ds["limit"].attrs.update(units=unit, long_name="sticking limit of drive.torque")
+    assert any(shown in remark for _, _, remark in answer(ds, "sticking_threshold").rows)
 
 
 def test_check_estimates_what_friction_takes(capfd):

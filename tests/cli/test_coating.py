@@ -88,21 +88,21 @@ def test_a_laboratorys_record_needs_no_repair(chart, folder, capfd):
     rows = "".join(f"{1e3 * time:.5f};{speed}\n" for time, speed in zip(ds.time.values, rpm, strict=True))
     heads = "Prüfstand 2\nAbtastrate;100 kHz\nZeit [ms];Drehzahl [1/min]\n"
     (folder / "rig.csv").write_text(heads + rows.replace(".", ","), encoding="cp1252")
-    given = ["assess", "rig.csv", "--map", chart, "--columns", "Zeit [ms]", "Drehzahl [1/min]"]
-    assert main(given) == 2
+    command = ["assess", "rig.csv", "--map", chart, "--columns", "Zeit [ms]", "Drehzahl [1/min]"]
+    assert main(command) == 2
     error = capfd.readouterr().err
     assert "rig.csv" in error
     assert "sample 500 (0.005 s) is missing" in error
     assert "--bridge" in error
     for more in ([], ["--skip", "2", "--delimiter", ";", "--decimal", ","]):
-        assert main([*given, "--bridge", "3", "--calibration", "1 %", "--offset", "0.01 rad/s", *more]) == 0
+        assert main([*command, "--bridge", "3", "--calibration", "1 %", "--offset", "0.01 rad/s", *more]) == 0
         said, answer = capfd.readouterr().out.splitlines()
         assert said == "rig.csv: semicolons, decimal commas, 2 lines skipped, 6 samples bridged"
         assert answer.startswith("clear: SAM fraction 0.72")
-    assert main([*given, "--bridge", "3", "--json"]) == 0
+    assert main([*command, "--bridge", "3", "--json"]) == 0
     assert json.loads(capfd.readouterr().out)["reading"] == said.removeprefix("rig.csv: ")
     for wrong in (["--calibration", "much"], ["--offset", "1 V"], ["--bridge", "-1"], ["--decimal", "x"]):
-        assert main([*given, *wrong]) == 2
+        assert main([*command, *wrong]) == 2
         assert capfd.readouterr().err.count("\n") == 1
 
 

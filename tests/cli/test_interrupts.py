@@ -24,8 +24,8 @@ class Dropped:
 
 
 def drop_one_and_wait():
-    one = Dropped(KeyboardInterrupt())
-    del one
+    dropped = Dropped(KeyboardInterrupt())
+    del dropped
     for _ in range(500):
         time.sleep(0.01)
 
@@ -37,10 +37,10 @@ def test_an_interrupt_in_a_destructor_is_not_lost():
 
 def test_other_errors_go_where_they_went(monkeypatch):
     seen = []
-    monkeypatch.setattr(sys, "unraisablehook", lambda found: seen.append(type(found.exc_value)))
+    monkeypatch.setattr(sys, "unraisablehook", lambda unraisable: seen.append(type(unraisable.exc_value)))
     with interrupts_kept():
-        one = Dropped(ValueError())
-        del one
+        dropped = Dropped(ValueError())
+        del dropped
     assert seen == [ValueError]
 
 

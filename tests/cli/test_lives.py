@@ -34,20 +34,18 @@ def test_lives_are_written_shown_and_drawn(folder, capsys):
     assert "lives of 2 coatings" in printed
     assert "100 % of the members" in printed
     assert "89.9 %" in printed
-    found = gd.studies.open_lives(f"{CASE}_lives.nc")
-    assert found.energy.attrs["units"] == "J/m^2"
-    assert json.loads(found.attrs["ensemble"])["distributions"] == {
-        "law.energy": "uniform(1 uJ/m^2, 2 uJ/m^2)"
-    }
+    ds = gd.studies.open_lives(f"{CASE}_lives.nc")
+    assert ds.energy.attrs["units"] == "J/m^2"
+    assert json.loads(ds.attrs["ensemble"])["distributions"] == {"law.energy": "uniform(1 uJ/m^2, 2 uJ/m^2)"}
     # of one scene a life lasts in proportion to the energy
-    lasted = found.passages_turning / found.energy
+    lasted = ds.passages_turning / ds.energy
     np.testing.assert_allclose(lasted, lasted[0], rtol=1e-4)  # last digits of the states
     assert main(["plot", f"{CASE}_lives.nc", "-o", "lives.png"]) == 0
     assert (folder / "lives.png").stat().st_size > 1000
     capsys.readouterr()
     assert main(["info", f"{CASE}_lives.nc"]) == 0
     printed = capsys.readouterr().out
-    assert str(found.attrs["title"]) in printed
+    assert str(ds.attrs["title"]) in printed
     assert "passages_to_sticking" in printed
     assert "coating.sam_fraction" in printed
     assert "None of 2 gears sticks as far as they were followed." in printed
@@ -116,8 +114,8 @@ def test_ctrl_c_keeps_the_lives_that_are_done(folder, monkeypatch):
     assert "Traceback" not in err
     endings = []
     for path in kept.glob("*.nc"):
-        with xr.open_dataset(path) as one:
-            endings.append(one.attrs["ending"])
+        with xr.open_dataset(path) as ds:
+            endings.append(ds.attrs["ending"])
     done = endings.count("coverage")
     assert 1 <= done < 4
     whole, opened = [path.stem for path in kept.glob("*.nc")], []

@@ -135,8 +135,8 @@ def test_the_time_of_many_runs():
     """20,000 times the time that `check` expects of one, four at a time."""
     scene = LOW.replace({"run.duration": 10.0})
     words = draw_words(scene, {"load.drag": "uniform(8e-18, 8.001e-18)"}, 20_000, 4)
-    found = re.search(r"20000 runs, .*; some ([\d.]+) min with 4 at a time", words)
-    assert float(found[1]) == pytest.approx(5000 * gd.studies.run_time(scene).seconds / 60.0, rel=0.1)
+    match = re.search(r"20000 runs, .*; some ([\d.]+) min with 4 at a time", words)
+    assert float(match[1]) == pytest.approx(5000 * gd.studies.run_time(scene).seconds / 60.0, rel=0.1)
 
 
 def test_the_sentence_of_a_sweep_names_where_the_gear_begins_to_stick():

@@ -101,7 +101,7 @@ def test_ranges_that_are_none(text):
 
 
 @pytest.mark.parametrize(
-    ("given", "spread_out"),
+    ("text", "spread_out"),
     [
         ("run c.toml --set a=1 b=2 --rtol 3", "run c.toml --set a=1 --set b=2 --rtol 3"),
         ("run --set a=1 b=2 c.toml", "run --set a=1 --set b=2 c.toml"),
@@ -113,8 +113,8 @@ def test_ranges_that_are_none(text):
         ("", ""),
     ],
 )
-def test_several_pairs_after_one_option(given, spread_out):
-    assert spread(given.split()) == spread_out.split()
+def test_several_pairs_after_one_option(text, spread_out):
+    assert spread(text.split()) == spread_out.split()
 
 
 @pytest.mark.parametrize("case", ["cases/low_speed.toml", "low_speed", "../a/low_speed.toml"])

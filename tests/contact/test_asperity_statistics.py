@@ -43,13 +43,15 @@ def test_scatter_by_quadrature(law, gap):
     sigma, moments = SILICON.roughness, np.zeros(3)
     parts = [(SILICON, 0.3, 0.5 * sigma), (PlainSurface(energy=0.1), 0.7, 0.0)]
     for surface, share, offset in parts:
-        own = law_of(law, surface)
+        single = law_of(law, surface)
         top = 12.0 + max(-gap, 0.0)
 
-        def moment(power, own=own, at=gap + offset / sigma, top=top):
+        def moment(power, single=single, at=gap + offset / sigma, top=top):
             return integrate.quad(
-                lambda r: 2.0 * r * float(own.load(r * r - own.join) ** power * psi(at + r * r - own.join)),
-                *(1e-9, math.sqrt(top + own.join)),
+                lambda r: (
+                    2.0 * r * float(single.load(r * r - single.join) ** power * psi(at + r * r - single.join))
+                ),
+                *(1e-9, math.sqrt(top + single.join)),
                 epsabs=0.0,
                 epsrel=1e-9,
                 limit=400,
@@ -110,8 +112,8 @@ def test_as_many_as_stand_higher_than_the_gap(gap):
         above, 0.0, half, epsabs=0.0, epsrel=1e-10, points=[half / 8, half / 3], limit=400
     )
     wanted = 2.0 * SILICON.asperity_density * WIDTH * strip
-    found = expected_asperities(gap * sigma, RADIUS, WIDTH, SILICON)
-    assert float(found) == pytest.approx(wanted, rel=1e-8, abs=0)  # the quadrature's own error
+    count = expected_asperities(gap * sigma, RADIUS, WIDTH, SILICON)
+    assert float(count) == pytest.approx(wanted, rel=1e-8, abs=0)  # the quadrature's own error
 
 
 def test_fewer_at_wider_gaps_and_none_far_away():

@@ -92,9 +92,9 @@ def test_twenty_nodes_carry_a_smooth_pressure(breadth):
 def test_work_is_reciprocal():
     # Maxwell-Betti: the work of one pressure on the other's deflection does not ask which came first.
     grid = line_grid(1e-6, L, E, 24)
-    one, two = np.exp(-0.5 * (grid.x / 1e-7) ** 2), np.exp(-0.5 * ((grid.x - 3e-7) / 9e-8) ** 2)
-    there = (grid.weights * one) @ grid.compliance @ two
-    back = (grid.weights * two) @ grid.compliance @ one
+    first, second = np.exp(-0.5 * (grid.x / 1e-7) ** 2), np.exp(-0.5 * ((grid.x - 3e-7) / 9e-8) ** 2)
+    there = (grid.weights * first) @ grid.compliance @ second
+    back = (grid.weights * second) @ grid.compliance @ first
     assert there == pytest.approx(
         back, rel=1e-4, abs=0
     )  # the second bell is not even, so its cosines end in a corner

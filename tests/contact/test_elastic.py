@@ -149,12 +149,12 @@ def test_closed_loop_loses_what_its_asperities_lose(silicon, asperity, loses):
 
 
 def test_path_in_between_does_not_matter(silicon):
-    one = elastic_line_force([0.0, 25e-9], R, L, silicon)
+    short = elastic_line_force([0.0, 25e-9], R, L, silicon)
     many = elastic_line_force(
         np.concatenate([np.linspace(40e-9, 0.0, 23), np.linspace(0.0, 25e-9, 17)]), R, L, silicon
     )
-    assert one[0] == pytest.approx(many[22], rel=1e-8, abs=0)
-    assert one[1] == pytest.approx(many[-1], rel=1e-8, abs=0)
+    assert short[0] == pytest.approx(many[22], rel=1e-8, abs=0)
+    assert short[1] == pytest.approx(many[-1], rel=1e-8, abs=0)
 
 
 def test_interface_of_two_materials(silicon, coated):
@@ -187,9 +187,9 @@ def test_fold_is_found_where_the_middle_gap_says(sticky):
             deflection = grid.compliance @ rough_pressure(gap, 0.0, sticky)
             return (gap - grid.x**2 / (2 * R) - rigid - deflection) * 1e9
 
-        found = optimize.root(residual, guess, tol=1e-10)
-        assert found.success
-        return found.x
+        solution = optimize.root(residual, guess, tol=1e-10)
+        assert solution.success
+        return solution.x
 
     state = np.concatenate([[2.0], grid.x[1:] ** 2 / (2 * R) * 1e9])
     rigid = []

@@ -38,8 +38,8 @@ def add(out, place, numbers, start, factor):
 
 
 @numba.njit
-def product(one, place, other, start):
-    return product_of_lanes(one, np.uintp(place), other, np.uintp(start))
+def product(left, place, right, start):
+    return product_of_lanes(left, np.uintp(place), right, np.uintp(start))
 
 
 @numba.njit
@@ -51,15 +51,15 @@ numbers = arrays(float, 40, elements=st.floats(-1e3, 1e3))
 
 
 @given(numbers, numbers, st.integers(0, 32), st.integers(0, 32), st.floats(-1e3, 1e3))
-def test_eight_numbers_are_added_and_multiplied(one, other, place, start, factor):
+def test_eight_numbers_are_added_and_multiplied(left, right, place, start, factor):
     here, there = slice(place, place + 8), slice(start, start + 8)
     # the order in which eight numbers are added
-    expected = one[here] @ other[there]
-    np.testing.assert_allclose(product(one, place, other, start), expected, rtol=0, atol=1e-8)
-    expected = one.copy()
-    expected[here] += factor * other[there]
-    add(one, place, other, start, factor)
-    np.testing.assert_array_equal(one, expected)  # and nothing beside them is touched
+    expected = left[here] @ right[there]
+    np.testing.assert_allclose(product(left, place, right, start), expected, rtol=0, atol=1e-8)
+    expected = left.copy()
+    expected[here] += factor * right[there]
+    add(left, place, right, start, factor)
+    np.testing.assert_array_equal(left, expected)  # and nothing beside them is touched
 
 
 @given(numbers, st.integers(0, 32), st.integers(0, 4), st.integers(8, 9), st.integers(0, 4))

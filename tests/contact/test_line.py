@@ -79,9 +79,9 @@ def test_closed_loop_loses_what_its_asperities_lose(silicon):
 
 def test_scales_with_width_and_root_of_radius(silicon):
     gap = np.linspace(-2e-8, 5e-8, 6)
-    one = line_force(gap, 0.0, R, L, silicon)
-    assert line_force(gap, 0.0, 4 * R, 3 * L, silicon) == pytest.approx(6 * one, rel=1e-13, abs=0)
-    assert one.shape == gap.shape
+    force = line_force(gap, 0.0, R, L, silicon)
+    assert line_force(gap, 0.0, 4 * R, 3 * L, silicon) == pytest.approx(6 * force, rel=1e-13, abs=0)
+    assert force.shape == gap.shape
 
 
 @pytest.mark.parametrize(

@@ -82,8 +82,8 @@ def test_rough_planes_take_no_more_than_smooth_ones(roughness, hamaker):
     """What smooth planes take at the closest spacing of atoms; once 1.7 to 20 J/m^2."""
     surface = BARE.model_copy(update={"roughness": roughness})
     with pytest.warns(UserWarning, match=r"asperities.* dominate.*smooth planes"):
-        found = adhesion_energy(surface, hamaker)
-    assert found == pytest.approx(2 * surface.energy + hamaker / (12 * math.pi * FLOOR**2), rel=1e-12, abs=0)
+        energy = adhesion_energy(surface, hamaker)
+    assert energy == pytest.approx(2 * surface.energy + hamaker / (12 * math.pi * FLOOR**2), rel=1e-12, abs=0)
 
 
 def test_the_bound_of_smooth_planes_is_the_usual_one_below_it():

@@ -78,12 +78,14 @@ def test_table_of_maximum_tension(silicon, roughness, parting, approaching):
     surface = smoothed(silicon, 1 / roughness)
     unit = silicon.asperity_density * asperity_of(silicon).pull_off
     for motion, stretch, printed in (("parting", math.inf, parting), ("approaching", 0.0, approaching)):
-        found = maximum_tension(surface, motion=motion)
-        assert 0.0 <= found.tension / unit - printed + 5e-5 < 2.5e-4
+        maximum = maximum_tension(surface, motion=motion)
+        assert 0.0 <= maximum.tension / unit - printed + 5e-5 < 2.5e-4
         grid = np.arange(-4.0, 12.0, 0.05) * surface.roughness
         scanned = -rough_pressure(grid, stretch, surface).min() / unit
         assert scanned == pytest.approx(printed, abs=5.1e-5)
-        assert -rough_pressure(found.gap, stretch, surface) == pytest.approx(found.tension, rel=1e-12, abs=0)
+        assert -rough_pressure(maximum.gap, stretch, surface) == pytest.approx(
+            maximum.tension, rel=1e-12, abs=0
+        )
 
 
 @pytest.mark.parametrize(

@@ -55,8 +55,8 @@ def test_beyond_its_table_a_load_goes_on_as_hertz_s_and_below_the_fold_it_stays(
     near, far = (asperity_value(table, 0, x)[0] for x in (1000.0, 4000.0))
     assert far / near == pytest.approx(8.0, rel=0.05)  # (1 + w)^3 in place of w^3
     ends = [asperity_value(table, 0, -law.detach - x) for x in (0.0, 0.1, 10.0)]
-    assert [one[1] for one in ends] == [0.0, 0.0, 0.0]
-    assert [one[0] for one in ends] == pytest.approx([float(law.load(-law.detach))] * 3, rel=1e-10)
+    assert [end[1] for end in ends] == [0.0, 0.0, 0.0]
+    assert [end[0] for end in ends] == pytest.approx([float(law.load(-law.detach))] * 3, rel=1e-10)
 
 
 def test_energies_of_one_asperity():
@@ -116,7 +116,7 @@ def test_forces_of_drawn_asperities_scatter_about_the_mean_law(name, kappa):
     x, z = reach * rng.uniform(-1.0, 1.0, counts.sum()), rng.standard_normal(counts.sum())
     overlap = z - gap - x**2 / (2.0 * radius * sigma)
     loads = np.where(overlap > 0.0, law.load(np.maximum(overlap, 0.0)), 0.0)
-    forces = np.array([one.sum() for one in np.split(loads, np.cumsum(counts)[:-1])])
+    forces = np.array([part.sum() for part in np.split(loads, np.cumsum(counts)[:-1])])
     root, weight = np.polynomial.legendre.leggauss(80)
     root = 1.75 * (root + 1.0)
     integral = float((1.75 * weight * 2.0 * root * law.load(root**2) * psi(gap + root**2)).sum())
@@ -132,9 +132,9 @@ def test_rolling_at_a_fixed_gap_costs_each_asperity_its_loss(name):
     surface = SCENE.surface if name == "bare" else SCENE.coated_surface
     law, gap = law_of("jkr", surface), 2.0
     told = next(
-        one
-        for one in NUMBERS["rolling_at_fixed_gap"]
-        if one["surface"] == name and one["g_over_sigma"] == gap
+        row
+        for row in NUMBERS["rolling_at_fixed_gap"]
+        if row["surface"] == name and row["g_over_sigma"] == gap
     )
     table, strata = asperity_table(law, 10.0), 8000
     above = 0.5 * math.erfc(gap / math.sqrt(2.0))
@@ -160,9 +160,9 @@ def test_approach_and_parting_of_a_roller():
     places, heights = [0.0, 0.12e-6, -0.2e-6], [15e-9, 14e-9, 17.5e-9]
     events, (_, speed), loss = drop(tips, places, heights, 5e-6, 6e-10, 0.01, 40e-9)
     assert [(kind, a) for _, kind, a, _ in events] == [
-        (one["kind"], one["asperity"]) for one in told["events"]
+        (event["kind"], event["asperity"]) for event in told["events"]
     ]
-    for (t, _, _, v), one in zip(events, told["events"], strict=True):
-        assert t == pytest.approx(one["t"], rel=1e-10, abs=0)
-        assert v == pytest.approx(one["speed"], rel=1e-9, abs=0)
+    for (t, _, _, v), event in zip(events, told["events"], strict=True):
+        assert t == pytest.approx(event["t"], rel=1e-10, abs=0)
+        assert v == pytest.approx(event["speed"], rel=1e-9, abs=0)
     assert 6e-10 * speed**2 == pytest.approx(6e-10 * 0.01**2 - 2.0 * loss, rel=1e-9, abs=0)

@@ -16,8 +16,8 @@ NAMES = re.findall(r"^ {3}gearidae\.([\w.]+)$", PAGE.read_text(encoding="utf-8")
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_name_is_reachable_and_has_words(name):
-    found = reduce(getattr, name.split("."), gd)
-    assert found.__doc__
+    member = reduce(getattr, name.split("."), gd)
+    assert member.__doc__
 
 
 def test_the_page_lists_all_that_is_public():

@@ -71,20 +71,20 @@ def same(shown: str, actual: str) -> bool:
     Words must agree; numbers to 2 %, which is what a shown number of two digits allows. The wall time, last of a
     row of outcomes, is another on each machine.
     """
-    wanted, found = shown.split(), actual.split()
-    if len(wanted) > len(found):
+    wanted, printed = shown.split(), actual.split()
+    if len(wanted) > len(printed):
         return False
-    pairs = list(zip(wanted, found, strict=False))
+    pairs = list(zip(wanted, printed, strict=False))
     if re.search(r"\s\d+\s+[\d.]+ [mu]?s$", shown):  # impacts, wall time
         pairs = pairs[:-2]
     return all(_same_word(*pair) for pair in pairs)
 
 
-def _same_word(wanted: str, found: str) -> bool:
+def _same_word(wanted: str, printed: str) -> bool:
     try:
-        return bool(np.isclose(float(wanted), float(found), rtol=0.02, atol=0.0))
+        return bool(np.isclose(float(wanted), float(printed), rtol=0.02, atol=0.0))
     except ValueError:
-        return wanted == found
+        return wanted == printed
 
 
 def prepare(page: Path) -> dict[str, object]:

@@ -39,9 +39,9 @@ TABLE = [[1.0, 0.4, 0.8]] + [[0.5, 0.9, 0.3]] * 18
 
 
 def balance(ds):
-    found = ds.gearidae.energy_balance
-    assert abs(found["residual"]) <= found["residual_bound"]
-    return found
+    energies = ds.gearidae.energy_balance
+    assert abs(energies["residual"]) <= energies["residual_bound"]
+    return energies
 
 
 @pytest.mark.parametrize("backend", ["native", "sksundae"])
@@ -136,8 +136,8 @@ def test_gears_apart_are_pulled_by_both_flanks_and_along_the_path(model, phase):
 def test_energy_is_kept(changes):
     """To what the balance allows itself, and to 1e-5 of what the attraction stores where nothing is lost at random."""
     scene = GEARS.replace({"run.duration": 5e-5, "run.rtol": 1e-7} | changes)
-    found = balance(gd.simulate(scene))
-    assert abs(found["residual"]) < 1e-7 * found["throughput"]
+    energies = balance(gd.simulate(scene))
+    assert abs(energies["residual"]) < 1e-7 * energies["throughput"]
 
 
 def test_nothing_changes_where_no_material_has_a_constant():
@@ -178,9 +178,9 @@ def test_forces_of_teeth_add_up_to_the_recorded_one(model):
     states = gd.studies.tooth_contacts(gd.simulate(scene), [1e-5, 2e-5, 4e-5])
     load = scene.drive.torque / scene.gears.pinion_base_radius
     for state in states:
-        forces = sum(one.force * (1 - 2 * one.flank) for one in state.contacts)
+        forces = sum(contact.force * (1 - 2 * contact.flank) for contact in state.contacts)
         assert abs(forces - state.mesh_force) < 1e-12 * load
-    pulls = [one.force for state in states for one in state.contacts if one.force < 0.0]
+    pulls = [contact.force for state in states for contact in state.contacts if contact.force < 0.0]
     assert min(pulls) < -1e-12
 
 
@@ -218,12 +218,12 @@ def test_a_run_goes_on_with_another_constant_and_books_the_change(model):
     scene = GEARS.replace({"contact.model": model} | changes)
     first = gd.simulate(scene)
     more = scene.replace({"coating.hamaker": 7e-20})
-    found = balance(gd.simulate(more, start=first))
+    energies = balance(gd.simulate(more, start=first))
     turned = float(first.gear_angle[-1]) * scene.geometry.base_radius_gear / scene.geometry.base_pitch
     phase = scene.initial.mesh_phase + turned
     stored = 2.5 * energy_of(scene, phase, float(first.transmission_error[-1]))
-    assert found["model_change"] == pytest.approx(stored, rel=0.06, abs=0)
-    assert abs(found["residual"]) < 0.1 * abs(stored)
+    assert energies["model_change"] == pytest.approx(stored, rel=0.06, abs=0)
+    assert abs(energies["residual"]) < 0.1 * abs(stored)
 
 
 # -- with friction ---------------------------------------------------------------------------------------------------
@@ -279,8 +279,8 @@ def test_friction_of_a_coated_pair_that_attracts_acts_on_its_contacts_alone():
         }
     )
     ds = gd.simulate(scene)
-    found = balance(ds)
-    loss = found["drive_friction_loss"] + found["coast_friction_loss"]
+    energies = balance(ds)
+    loss = energies["drive_friction_loss"] + energies["coast_friction_loss"]
     assert loss == pytest.approx(simpson(friction_power(scene, ds), x=ds.time.values), rel=1e-6, abs=0)
     without = gd.simulate(scene.replace({"coating.hamaker": 0.0})).gearidae.energy_balance
     assert loss != pytest.approx(

@@ -72,7 +72,7 @@ def test_a_booking_that_is_a_hundredth_out_is_warned_of(balances, name, booking)
 
 # -- what it is made of ----------------------------------------------------------------------------------------------
 
-NOTHING = {name: 0.0 for each in (*ENERGY_SUMS, *ENERGY_NOW) for name in each.names}
+NOTHING = {name: 0.0 for quantity in (*ENERGY_SUMS, *ENERGY_NOW) for name in quantity.names}
 
 
 def test_the_bound_is_the_sum_of_its_parts():

@@ -30,7 +30,7 @@ COMPILING = re.compile(r"compiling .* for this machine: once, .*|.*: \d+ functio
 @pytest.fixture(scope="module")
 def sound():
     """A checkpoint in the middle of each scene's run, with contacts in touch."""
-    found = {}
+    checkpoints = {}
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(portable, "CHECKPOINT_STEPS", 60)
         for name, scene in SCENES.items():
@@ -38,8 +38,8 @@ def sound():
                 make_problem(scene), scene.run.rtol, scene.run.sample_count, "sksundae", Statistics()
             )
             taken = [block.checkpoint for block in run if block.checkpoint is not None]
-            found[name] = next(c for c in taken[1:] if restored(name, c)[0].state.near.any())
-    return found
+            checkpoints[name] = next(c for c in taken[1:] if restored(name, c)[0].state.near.any())
+    return checkpoints
 
 
 PROBLEMS = {}
@@ -253,11 +253,11 @@ def test_nothing_is_left_of_a_run_before(name, backend, sound):
         pass
     models = []
     for problem in (used, make_problem(scene)):
-        own = problem.of_checkpoint(sound[name])
-        own.prepare(scene.run.rtol, scene.run.sample_count)
-        own.model.work.search.as_ida, own.model.work.search.sharpness = 0, 0.0  # which a driver sets
-        own.restore(sound[name], np.empty(own.start.size))
-        models.append(own.model)
+        resumed = problem.of_checkpoint(sound[name])
+        resumed.prepare(scene.run.rtol, scene.run.sample_count)
+        resumed.model.work.search.as_ida, resumed.model.work.search.sharpness = 0, 0.0  # which a driver sets
+        resumed.restore(sound[name], np.empty(resumed.start.size))
+        models.append(resumed.model)
     assert models[0].work.tobytes() == models[1].work.tobytes()
     assert models[0].state.tobytes() == models[1].state.tobytes()
 

@@ -64,12 +64,12 @@ def test_whole_and_bare_sides_are_the_patches(fraction):
 
 def test_equal_energies_are_one_material():
     """Three materials that are all alike are one: 1e-12 of the speed's swing, far above the rounding of sums."""
-    one = solve(SHORT.replace({"coating.sam_fraction": 1.0, "run.rtol": 1e-9}))
+    single = solve(SHORT.replace({"coating.sam_fraction": 1.0, "run.rtol": 1e-9}))
     alike = LOW.surface.model_copy(update={"energy": LOW.coating.energy})
     three = solve(coated(SHORT.replace({"surface": alike, "run.rtol": 1e-9}), 0.3, 0.6))
-    swing = np.ptp(one.samples["gear_speed"])
+    swing = np.ptp(single.samples["gear_speed"])
     # rounding is amplified by the oscillation of the contact; 1e-9 a step is the tolerance of both
-    np.testing.assert_allclose(three.samples["gear_speed"], one.samples["gear_speed"], atol=1e-5 * swing)
+    np.testing.assert_allclose(three.samples["gear_speed"], single.samples["gear_speed"], atol=1e-5 * swing)
 
 
 @pytest.mark.parametrize("model", ["asperity", "elastic"])
@@ -98,9 +98,9 @@ def test_loading_pieces_are_those_of_the_wider_gap(offset):
     for gap in np.linspace(-7.0, 9.0, 33):
         expected = loading_value(near, 0, gap + offset)
         size = abs(expected[0]) + abs(expected[1])
-        found = loading_value(loading, 0, gap)
+        value = loading_value(loading, 0, gap)
         # 1e-8 of the force, or of its slope where that changes sign: the stated error at an offset of 6 roughnesses
-        assert found == pytest.approx(expected, rel=0, abs=1e-8 * size + 1e-30)
+        assert value == pytest.approx(expected, rel=0, abs=1e-8 * size + 1e-30)
     for gap in (-3.0, 0.3, 4.0):
         work = quad(lambda at: loading_value(loading, 0, at)[0], gap, 13.0, epsabs=0, epsrel=1e-11, limit=200)
         assert loading_value(potential, 0, gap)[0] == pytest.approx(work[0], rel=1e-7, abs=1e-12)
@@ -122,8 +122,8 @@ def test_an_impact_loses_what_the_asperities_of_all_materials_cost():
     surface, roller = scene.surface, scene.roller
     count = surface.asperity_density * roller.width * np.sqrt(2 * roller.radius * surface.roughness)
     lost = 0.0
-    for own, share, offset, _ in scene.materials():
-        tip = asperity_of(own)
+    for material, share, offset, _ in scene.materials():
+        tip = asperity_of(material)
         deepest = (run.samples["height"].min() + offset) / surface.roughness
         lost += share * count * JOINING * tip.pull_off * tip.stretch_limit * tail(deepest)
     # the lowest sample lies near a turning point, so that its error enters squared

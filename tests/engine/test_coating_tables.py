@@ -61,7 +61,7 @@ def test_the_gears_tooth_of_the_coast_flank_is_the_one_behind():
         "drive 1": 1 + at_pitch_point,
     }
     assert passes["coast 0"] == pytest.approx(0.5 * (passes["drive 0"] + passes["drive 1"]))
-    assert [int(one) for one in met_teeth(0, coast=True)] == [0, 1]
+    assert [int(tooth) for tooth in met_teeth(0, coast=True)] == [0, 1]
 
 
 def test_shares_are_smooth_and_their_derivatives_true():
@@ -69,7 +69,7 @@ def test_shares_are_smooth_and_their_derivatives_true():
     step = 1e-5
     for inside in np.linspace(0.01, SHORT.geometry.contact_ratio - 0.01, 57):
         low, here, high = (np.array(shares_of(m, 0, 4, inside + by * step)) for by in (-1, 0, 1))
-        value, slope, bend = (np.array(one) for one in share_changes(m, 0, 4, inside))
+        value, slope, bend = (np.array(row) for row in share_changes(m, 0, 4, inside))
         np.testing.assert_allclose(value, here, atol=1e-15)
         # differences of second order: the third and fourth derivatives times step^2, and rounding over step
         np.testing.assert_allclose((high - low) / (2 * step), slope, atol=1e-6)
@@ -89,7 +89,7 @@ def test_weighed_lengths_change_as_said(tables, values):
     travel = [m.scene.phase_rate * (w * t + 0.5 * w_rate * t * t) for t in (-dt, 0.0, dt)]
     for coast, pair, phase in [(0, 0, 0.4), (0, -1, 0.1), (1, 0, 1.9)]:
         near = [weighed_length(m, (coast, pair, phase + by), w, w_rate, values, values) for by in travel]
-        low, here, high = (one[0] for one in near)
+        low, here, high = (lengths[0] for lengths in near)
         _, rate, bend, by_gap = near[1]
         np.testing.assert_allclose((high - low) / (2 * dt), rate, rtol=1e-5, atol=1e-12)
         np.testing.assert_allclose((high - 2 * here + low) / dt**2, bend, rtol=1e-3, atol=1e-7)
@@ -101,7 +101,7 @@ def test_branches_are_mixed_by_their_shares(gap):
     """Those of one material alone with its share, and slopes by differences."""
     m = make_problem(sides(SHORT, PINION, GEAR, thickness="2 nm")).model
     shares = (0.2, 0.5, 0.3)
-    alone = [loading_of(m, gap, tuple(one)) for one in np.eye(3).tolist()]
+    alone = [loading_of(m, gap, tuple(unit_shares)) for unit_shares in np.eye(3).tolist()]
     np.testing.assert_allclose(loading_of(m, gap, shares), shares @ np.array(alone), rtol=1e-12, atol=1e-15)
     potentials, slopes = potentials_of(m, gap)
     assert potential_of(m, gap, shares) == pytest.approx(np.dot(shares, potentials), rel=1e-12, abs=1e-15)
@@ -118,11 +118,13 @@ def test_a_table_of_one_fraction_is_that_fraction(pairing):
     tables = {"coating.pinion_table": np.full((19, 4), 0.6)}
     if pairing == "independent":
         tables["coating.gear_table"] = [[0.6]]
-    one, other = solve(uniform), solve(uniform.replace(tables))
-    swing = np.ptp(one.samples["gear_speed"])
-    np.testing.assert_allclose(other.samples["gear_speed"], one.samples["gear_speed"], atol=1e-5 * swing)
-    assert other.balance.adhesion_loss == pytest.approx(one.balance.adhesion_loss, rel=1e-5, abs=0)
-    taken, expected = (each.balance.adhesion_loss - each.balance.radius_work for each in (other, one))
+    single, table = solve(uniform), solve(uniform.replace(tables))
+    swing = np.ptp(single.samples["gear_speed"])
+    np.testing.assert_allclose(table.samples["gear_speed"], single.samples["gear_speed"], atol=1e-5 * swing)
+    assert table.balance.adhesion_loss == pytest.approx(single.balance.adhesion_loss, rel=1e-5, abs=0)
+    taken, expected = (
+        solution.balance.adhesion_loss - solution.balance.radius_work for solution in (table, single)
+    )
     assert taken == pytest.approx(expected, rel=1e-6, abs=0)
 
 
@@ -132,10 +134,10 @@ def test_impacts_lose_the_same_with_a_table(rtol):
     uniform = gd.preset("teodorescu2009").replace(
         {"coating.sam_fraction": 0.6, "run.rtol": rtol, "run.duration": "0.1 ms", "run.samples": "off"}
     )
-    one, other = solve(uniform), solve(uniform.replace({"coating.pinion_table": np.full((19, 4), 0.6)}))
+    single, table = solve(uniform), solve(uniform.replace({"coating.pinion_table": np.full((19, 4), 0.6)}))
     error = 1000.0 * rtol
-    assert other.balance.adhesion_loss == pytest.approx(one.balance.adhesion_loss, rel=error, abs=0)
-    assert other.balance.radius_work == pytest.approx(one.balance.radius_work, rel=10.0 * error, abs=0)
+    assert table.balance.adhesion_loss == pytest.approx(single.balance.adhesion_loss, rel=error, abs=0)
+    assert table.balance.radius_work == pytest.approx(single.balance.radius_work, rel=10.0 * error, abs=0)
 
 
 def test_only_the_teeth_that_meet_count():

@@ -35,12 +35,14 @@ def test_a_table_of_one_fraction_is_that_fraction(method):
     changes = {"coating.sam_fraction": 0.6, "coating.pairing": "independent", "run.method": method}
     uniform = SHORT.replace({**changes, "run.rtol": 1e-8 if method == "auto" else 1e-10})
     tables = {"coating.pinion_table": np.full((19, 4), 0.6), "coating.gear_table": [[0.6]]}
-    one, other = solve(uniform), solve(uniform.replace(tables))
-    swing = np.ptp(one.samples["gear_speed"])
-    np.testing.assert_allclose(other.samples["gear_speed"], one.samples["gear_speed"], atol=1e-5 * swing)
-    taken, expected = (each.balance.adhesion_loss - each.balance.radius_work for each in (other, one))
+    single, table = solve(uniform), solve(uniform.replace(tables))
+    swing = np.ptp(single.samples["gear_speed"])
+    np.testing.assert_allclose(table.samples["gear_speed"], single.samples["gear_speed"], atol=1e-5 * swing)
+    taken, expected = (
+        solution.balance.adhesion_loss - solution.balance.radius_work for solution in (table, single)
+    )
     # Adams' steps are longer: there the errors of both balances' quadratures, by their own estimates
-    errors = one.balance.quadrature_error + other.balance.quadrature_error
+    errors = single.balance.quadrature_error + table.balance.quadrature_error
     allowed = errors if method == "auto" else 1e-6 * expected
     assert taken == pytest.approx(expected, rel=0, abs=allowed)
     assert allowed < 1e-4 * expected

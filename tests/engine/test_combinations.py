@@ -108,7 +108,7 @@ def test_features_go_together(features):
     for name in ("rows", "events", "passages"):
         parts = ([*blocks[: cut + 1], *resumed], blocks)
         np.testing.assert_array_equal(
-            *(np.concatenate([getattr(one, name) for one in part]) for part in parts)
+            *(np.concatenate([getattr(rows, name) for rows in part]) for part in parts)
         )
     assert_same(resumed[-1].balance, blocks[-1].balance)
     assert_same(resumed[-1].extremes, blocks[-1].extremes)

@@ -25,16 +25,17 @@ NOTHING = MappingProxyType({})
 
 def run(folder, model, code=RUN, more=NOTHING):
     """Run a program with its compiled code in a folder, None for the folder that this process has, too."""
-    own = {"PYTHONPATH": str(Path(cache.__file__).parents[2])}  # the package that is tested, wherever it lies
+    # the package that is tested, wherever it lies
+    environment = {"PYTHONPATH": str(Path(cache.__file__).parents[2])}
     if folder is None:
-        own = dict(os.environ) | own
+        environment = dict(os.environ) | environment
     else:
-        own |= {"NUMBA_CACHE_DIR": str(folder), "PATH": "", "HOME": str(folder)}
+        environment |= {"NUMBA_CACHE_DIR": str(folder), "PATH": "", "HOME": str(folder)}
         # BLAS kernels decide the last bits of the tables
-        own |= {name: value for name, value in os.environ.items() if name.startswith("OPENBLAS_")}
+        environment |= {name: value for name, value in os.environ.items() if name.startswith("OPENBLAS_")}
     done = subprocess.run(
         [sys.executable, "-c", code.format(model=model)],
-        env=own | more,
+        env=environment | more,
         capture_output=True,
         text=True,
         check=False,

@@ -43,8 +43,8 @@ def test_a_call_hands_everything_over(flag, count, size, numbers, pair):
     make_ready("tests")
     answers = []
     for function in (weigh.py_func, weigh, weigh_from_compiled):
-        own = np.array(numbers)
-        answers.append((function(flag, count, size, own, pair), own.tolist()))
+        array = np.array(numbers)
+        answers.append((function(flag, count, size, array, pair), array.tolist()))
     assert answers[0] == answers[1] == answers[2]
 
 
@@ -80,16 +80,16 @@ class Named(NamedTuple):
     number: float
 
 
-def _untyped(one: Any) -> float: ...
+def _untyped(value: Any) -> float: ...
 
 
-def _unnamed(one: Named) -> float: ...
+def _unnamed(value: Named) -> float: ...
 
 
-def _bare(one: float) -> Floats: ...
+def _bare(value: float) -> Floats: ...
 
 
-def _inside(one: float) -> tuple[float, Floats]: ...
+def _inside(value: float) -> tuple[float, Floats]: ...
 
 
 Scalar = TypeVar("Scalar", bound=np.generic)
@@ -98,7 +98,7 @@ Numbers = TypeAliasType("Numbers", Array[np.float64])
 Pair = TypeAliasType("Pair", tuple[float, int])
 
 
-def _array_behind_an_alias(one: float) -> Numbers: ...
+def _array_behind_an_alias(value: float) -> Numbers: ...
 
 
 @pytest.mark.parametrize(
@@ -117,11 +117,11 @@ def test_annotations_that_are_no_signature_are_refused(function, message):
     assert function.__name__ in str(refused.value)
 
 
-def _with_aliases(one: Numbers, two: Array[np.float64]) -> Pair: ...
+def _with_aliases(first: Numbers, second: Array[np.float64]) -> Pair: ...
 
 
 def _with_types(
-    one: np.ndarray[Any, np.dtype[np.float64]], two: np.ndarray[Any, np.dtype[np.float64]]
+    first: np.ndarray[Any, np.dtype[np.float64]], second: np.ndarray[Any, np.dtype[np.float64]]
 ) -> tuple[float, int]: ...
 
 
@@ -161,13 +161,13 @@ class Interrupted:
 
 
 def test_what_has_been_interrupted_still_waits():
-    one = Interrupted()
-    ready.wait("interrupted", one)
+    interrupted = Interrupted()
+    ready.wait("interrupted", interrupted)
     with pytest.raises(KeyboardInterrupt):
         make_ready("interrupted")
     for _ in range(2):
         make_ready("interrupted")
-    assert one.tries == 2
+    assert interrupted.tries == 2
 
 
 class Slow:

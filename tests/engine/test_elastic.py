@@ -265,12 +265,12 @@ def test_gears_in_light_contact_hardly_notice():
     changes = {"coating.sam_fraction": 0.5, "run.duration": 0.02, "run.samples": 501}
     scene = gd.preset("teodorescu2009_low_speed").replace(changes)
     rigid = solve(scene.replace({"contact.bodies": "rigid"}))
-    given = solve(scene.replace({"contact.bodies": "elastic"}))
+    elastic = solve(scene.replace({"contact.bodies": "elastic"}))
     # loads of 1e-12 N deflect teeth by 1e-8 roughnesses; forces in the tail change by ten times as much
     for name in ("gear_speed", "transmission_error"):
         swing = np.ptp(rigid.samples[name])
-        np.testing.assert_allclose(given.samples[name], rigid.samples[name], atol=2e-3 * swing)
-    turning = [np.count_nonzero(r.events.kind == EventKind.TURNING_POINT) for r in (rigid, given)]
+        np.testing.assert_allclose(elastic.samples[name], rigid.samples[name], atol=2e-3 * swing)
+    turning = [np.count_nonzero(r.events.kind == EventKind.TURNING_POINT) for r in (rigid, elastic)]
     assert turning[0] == turning[1] > 3
 
 
@@ -324,11 +324,11 @@ def test_run_changes_over_to_the_elastic_model(monkeypatch, backend):
     blocks = list(run_blocks(chosen, 1e-6, 1001, backend, Statistics()))
     assert chosen.skipped["elastic_deflection"] == 0
     rows = np.concatenate([block.rows for block in blocks])
-    given = solve(roller("roller_fast", **{"run.samples": 1001})).samples
+    samples = solve(roller("roller_fast", **{"run.samples": 1001})).samples
     # up to the change-over the rigid teeth have pushed a few per cent too hard
     assert rows.shape[0] == 1001
-    assert rows[:, 2].max() == pytest.approx(given["force"].max(), rel=1e-3, abs=0)
-    assert rows[-1, 1] == pytest.approx(given["speed"][-1], rel=5e-3, abs=0)
+    assert rows[:, 2].max() == pytest.approx(samples["force"].max(), rel=1e-3, abs=0)
+    assert rows[-1, 1] == pytest.approx(samples["speed"][-1], rel=5e-3, abs=0)
 
 
 def test_run_resumes_from_before_and_after_the_change(monkeypatch):
@@ -365,12 +365,12 @@ def test_fold_ends_the_run_by_name(backend):
 
 @pytest.mark.parametrize("backend", ["native", "sksundae"])
 def test_nodes_are_laid_out_anew_when_pressed_too_deep(monkeypatch, backend):
-    given = solve(roller("roller_fast", **{"run.samples": 1001, "run.rtol": 1e-8}))
+    solution = solve(roller("roller_fast", **{"run.samples": 1001, "run.rtol": 1e-8}))
     monkeypatch.setattr(build_contact, "deepest_gap", lambda *arguments: 2.0)
     run = solve(roller("roller_fast", **{"run.samples": 1001, "run.rtol": 1e-8}), backend=backend)
     assert run.status == "finished"
     # up to the new layout the nodes at the edge carry 1e-5 of the force
-    force = given.samples["force"]
+    force = solution.samples["force"]
     np.testing.assert_allclose(run.samples["force"], force, rtol=0, atol=3e-5 * force.max())
 
 
@@ -406,7 +406,7 @@ def test_a_run_whose_nodes_are_laid_out_anew_can_be_resumed_before_and_after_tha
     monkeypatch.setattr(build_contact, "deepest_gap", lambda *arguments: 2.0)
     monkeypatch.setattr(portable, "CHECKPOINT_STEPS", 40)
     deepen, deepened = backend.deepen, []
-    monkeypatch.setattr(backend, "deepen", lambda *given: deepened.append(1) or deepen(*given))
+    monkeypatch.setattr(backend, "deepen", lambda *call: deepened.append(1) or deepen(*call))
     scene = roller("roller_fast", **{"run.samples": 201})
 
     def blocks(resume=None):

@@ -68,11 +68,11 @@ def test_slopes_are_those_along_which_the_bodies_follow(softness):
         assert settle_nodes(m, 0.0, y)
         return mesh_forces(m, 0.0, y, False)[0]
 
-    found = mesh_forces(m, 0.0, gears.start[:4].copy(), True)  # a state without deflections
-    assert found[0] == pytest.approx(force(U, 0.0), rel=1e-6, abs=0)
+    answer = mesh_forces(m, 0.0, gears.start[:4].copy(), True)  # a state without deflections
+    assert answer[0] == pytest.approx(force(U, 0.0), rel=1e-6, abs=0)
     by_u = (force(U, nudge) - force(U, -nudge)) / (2 * nudge)
     # differences: the square of the nudge over that of a roughness
-    assert found[2] == pytest.approx(by_u, rel=1e-5, abs=0)
+    assert answer[2] == pytest.approx(by_u, rel=1e-5, abs=0)
     at_rest = mesh_forces(m, 0.0, gears.start, False)[2]
     assert abs(at_rest - by_u) > 1e-3 * abs(by_u)  # bodies that do not follow are stiffer
 
@@ -108,19 +108,19 @@ def test_a_step_solves_newtons_equations(monkeypatch, softness, mild):
     if mild:
         assert newton_step(m, k, y)
     else:
-        one, two = left.copy(), follow.copy()
+        first, second = left.copy(), follow.copy()
         assert newton_step(m, k, y)  # which leaves the loads' slopes where they are
         slopes, kappa = (equation_space(m, place) for place in (5, 7))
-        pad = [np.concatenate([x, np.zeros(equation_space(m, STEP).size - x.size)]) for x in (one, two)]
+        pad = [np.concatenate([x, np.zeros(equation_space(m, STEP).size - x.size)]) for x in (first, second)]
         assert newton._eliminate(m, slopes, kappa, *pad)
         equation_space(m, STEP)[:], equation_space(m, FOLLOW)[:] = pad
     n = left.size
     exact = np.linalg.solve(matrix, np.column_stack([left, follow]))
     # the series ends at 1e-7 of its sum
     for place, column in ((STEP, 0), (FOLLOW, 1)):
-        found = equation_space(m, place)[:n]
+        result = equation_space(m, place)[:n]
         np.testing.assert_allclose(
-            found, exact[:, column], rtol=0, atol=3e-7 * np.abs(exact[:, column]).max()
+            result, exact[:, column], rtol=0, atol=3e-7 * np.abs(exact[:, column]).max()
         )
 
 

@@ -436,9 +436,9 @@ def test_the_ledger_is_in_the_dataset(tmp_path):
     scene = LOW.replace({"run.duration": 2e-3, "run.samples": 11})
     ds = gd.simulate(scene)
     kept = ds.gearidae.energy_balance
-    given = kept["drive_work"] + kept["radius_work"] + kept["model_change"]
+    supplied = kept["drive_work"] + kept["radius_work"] + kept["model_change"]
     lost = kept["drag_loss"] + kept["dry_loss"] + kept["damping_loss"] + kept["adhesion_loss"]
-    left = given - lost - kept["stored_change"] - kept["kinetic_change"]
+    left = supplied - lost - kept["stored_change"] - kept["kinetic_change"]
     assert kept["residual"] == pytest.approx(left, abs=1e-12 * kept["throughput"])
     bound = solve(scene).balance.bound(scene.run.rtol, roller=False)
     assert kept["residual_bound"] == pytest.approx(bound, rel=1e-12, abs=0)

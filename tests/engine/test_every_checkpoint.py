@@ -37,8 +37,8 @@ def test_every_checkpoint_is_taken_back(name, rtol, monkeypatch):
     assert len(taken) >= 10
     again, prepared = make_problem(scene), None
     for checkpoint in taken:
-        own = again.of_checkpoint(checkpoint)
-        if own is not prepared:
-            own.prepare(rtol, 57)
-            prepared = own
-        own.restore(checkpoint, np.empty(own.start.size))
+        resumed = again.of_checkpoint(checkpoint)
+        if resumed is not prepared:
+            resumed.prepare(rtol, 57)
+            prepared = resumed
+        resumed.restore(checkpoint, np.empty(resumed.start.size))

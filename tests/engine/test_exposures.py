@@ -21,7 +21,7 @@ NAMES = ("asperity_contacts", "adhesion_work", "sliding_work", "largest_pressure
 
 def total(ds, name="adhesion_work"):
     """What a run adds up to over all flanks [J], from the values per area of each material."""
-    shares = np.array([each.share for each in ds.gearidae.scene.materials()])
+    shares = np.array([material.share for material in ds.gearidae.scene.materials()])
     return float((ds[name] * ds.flank_area).sum(("flank", "tooth", "place")).values @ shares)
 
 
@@ -71,10 +71,10 @@ def pairs_of(ds):
         first = g.base_radius_pinion * math.tan(scene.gears.pressure_angle) - g.approach + inside * pitch
         both = (g.base_radius_pinion + g.base_radius_gear) * math.tan(scene.gears.pressure_angle)
         radius = first * (both - first) / both
-        own = gap + relief
-        force = np.exp(np.interp(own, grid, law, right=-math.inf)) * np.sqrt(radius)
+        distance = gap + relief
+        force = np.exp(np.interp(distance, grid, law, right=-math.inf)) * np.sqrt(radius)
         speed = (ds.pinion_speed.values + ds.gear_speed.values) * (inside * pitch - g.approach)
-        yield pair, inside / ratio, force, speed, own / sigma, np.sqrt(radius / pitch)
+        yield pair, inside / ratio, force, speed, distance / sigma, np.sqrt(radius / pitch)
 
 
 def places_of(where, values, places):
@@ -209,10 +209,10 @@ def test_each_contact_costs_its_loss(worn):
     for name, surface in (("bare", scene.surface), ("coated", scene.coated_surface)):
         tip = asperity_of(surface)
         cost = JOINING * tip.pull_off * tip.stretch_limit
-        own = worn.sel(material=name)
-        contacts = float(own.asperity_contacts.sum())
+        exposure = worn.sel(material=name)
+        contacts = float(exposure.asperity_contacts.sum())
         assert contacts > 0.0
-        assert float(own.adhesion_work.sum()) == pytest.approx(cost * contacts, rel=1e-6, abs=0)
+        assert float(exposure.adhesion_work.sum()) == pytest.approx(cost * contacts, rel=1e-6, abs=0)
 
 
 def test_labels_and_areas(worn):

@@ -49,10 +49,10 @@ class Recorder:
 
 @pytest.fixture
 def calls(monkeypatch):
-    found = []
+    names = []
     for name in ("joining", "extremes", "rubbing", "balance", "exposures"):
-        monkeypatch.setattr(in_turn, name, Recorder(name, found))
-    return found
+        monkeypatch.setattr(in_turn, name, Recorder(name, names))
+    return names
 
 
 def follow(balance, exposures):
@@ -70,7 +70,7 @@ def follow(balance, exposures):
 def test_all_are_called_in_order(calls):
     follow(1, 1)
     hooks = {
-        hook: [one.partition(".")[0] for one in calls if one.endswith(hook)] for hook in ("step", "finish")
+        hook: [call.partition(".")[0] for call in calls if call.endswith(hook)] for hook in ("step", "finish")
     }
     assert hooks["step"] == ["joining", "extremes", "balance", "exposures"]
     assert calls.index("rubbing.book_rubbing") < calls.index("extremes.step") < calls.index("balance.step")
@@ -84,7 +84,7 @@ def test_all_are_called_in_order(calls):
 )
 def test_what_is_not_wanted_is_not_called(calls, balance, exposures, gone):
     follow(balance, exposures)
-    called = {one.partition(".")[0] for one in calls}
+    called = {call.partition(".")[0] for call in calls}
     assert called == {"joining", "extremes", "rubbing", "balance", "exposures"} - gone
 
 
@@ -121,7 +121,7 @@ def test_datasets_go_without(tmp_path):
     ds = gd.simulate(scene, archive=tmp_path / "run.nc")
     assert ds.gearidae.energy_balance is None
     assert np.isnan(imbalance_of(ds))
-    told, other = (each.gearidae.account.as_plain() for each in (ds, gd.simulate(GEARS)))
+    told, other = (dataset.gearidae.account.as_plain() for dataset in (ds, gd.simulate(GEARS)))
     energies = {name for name, value in told.items() if value != other[name]}
     assert "residual" in energies
     assert all(told[name] is None for name in energies)
@@ -130,10 +130,10 @@ def test_datasets_go_without(tmp_path):
     gd.write_report(gd.simulate(GEARS), tmp_path / "whole.html")
     assert ">adhesion loss<" in (tmp_path / "whole.html").read_text()
     low = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 0.02, "run.samples": 501})
-    (found,) = gd.outcomes(gd.simulate(low.replace(WITHOUT)))
+    (outcome,) = gd.outcomes(gd.simulate(low.replace(WITHOUT)))
     (expected,) = gd.outcomes(gd.simulate(low))
-    assert found.words == expected.words
-    assert np.isnan(found.imbalance)
+    assert outcome.words == expected.words
+    assert np.isnan(outcome.imbalance)
     assert expected.imbalance < 1.0
     ds = gd.sweep(scene, {"run.balance": [True, False]})
     np.testing.assert_array_equal(np.isnan(ds["residual"].values), [False, True])

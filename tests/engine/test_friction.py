@@ -42,7 +42,7 @@ def run(scene, backend="native"):
 
 
 def kinds(solution):
-    return [EventKind(one) for one in solution.events.kind.tolist()]
+    return [EventKind(number) for number in solution.events.kind.tolist()]
 
 
 def friction_loss(balance):
@@ -89,7 +89,7 @@ LISTED = dict(
     zip(
         ("arc", "height", "radius"),
         (
-            [one * unit for one in column]
+            [length * unit for length in column]
             for column, unit in zip(
                 zip(*NUMBERS["gear_explicit"]["list_arc_um_height_nm_radius_nm"], strict=True),
                 (1e-6, 1e-9, 1e-9),
@@ -177,12 +177,14 @@ def test_materials_of_equal_friction_are_one():
 def test_sliding_turns_round_or_rolls_once_a_pitch():
     scene = HIGH.replace({"contact.friction": 0.1, "mesh.damping": 7e-6, "run.samples": "off"})
     solution = run(scene.replace({"run.duration": 200e-6}))
-    found = [one for one, flank in zip(kinds(solution), solution.events.flank, strict=True) if flank == 0]
-    exits = found.count(EventKind.MESH_EXIT)
-    begun = found.count(EventKind.FLANK_STICK) + found.count(EventKind.SLIDING_REVERSAL)
+    of_drive = [
+        kind for kind, flank in zip(kinds(solution), solution.events.flank, strict=True) if flank == 0
+    ]
+    exits = of_drive.count(EventKind.MESH_EXIT)
+    begun = of_drive.count(EventKind.FLANK_STICK) + of_drive.count(EventKind.SLIDING_REVERSAL)
     assert 6 <= exits <= 7
     assert exits - 1 <= begun <= exits + 1
-    assert abs(found.count(EventKind.FLANK_SLIP) - found.count(EventKind.FLANK_STICK)) <= 1
+    assert abs(of_drive.count(EventKind.FLANK_SLIP) - of_drive.count(EventKind.FLANK_STICK)) <= 1
 
 
 # -- limits ----------------------------------------------------------------------------------------------------------
@@ -307,20 +309,20 @@ def margins(m, y, mu, hub):
     noted = m.work.notes.pair[: m.work.notes.count]
     # levers in base pitches: torques over base radii times radii
     a, b = float(s.pinion_radius / s.base_pitch), float(s.gear_radius / s.base_pitch)
-    place = [float(one["position"]) for one in noted]
-    limit = [mu * float(one["force"]) for one in noted]
-    r1 = [float(s.start_radius) + one for one in place]
+    place = [float(contact["position"]) for contact in noted]
+    limit = [mu * float(contact["force"]) for contact in noted]
+    r1 = [float(s.start_radius) + position for position in place]
     dry = float(s.torque[1].constant) * b
-    h1 = hub * math.hypot(sum(one["force"] for one in noted), 0.0) * a
+    h1 = hub * math.hypot(sum(contact["force"] for contact in noted), 0.0) * a
     q1, q2 = float(q1) * a, float(q2) * b
-    found = []
+    distances = []
     for i in range(len(place)):
         held = sum(limit[j] * abs(place[j] - place[i]) for j in range(len(place)))
-        found.append(c * held + r1[i] * dry + (c - r1[i]) * h1 - abs((c - r1[i]) * q1 + r1[i] * q2))
-    found.append(sum(one * r for one, r in zip(limit, r1, strict=True)) + h1 - abs(q1))
+        distances.append(c * held + r1[i] * dry + (c - r1[i]) * h1 - abs((c - r1[i]) * q1 + r1[i] * q2))
+    distances.append(sum(bound * r for bound, r in zip(limit, r1, strict=True)) + h1 - abs(q1))
     if hub > 0.0:
-        found.append(sum(one * (c - r) for one, r in zip(limit, r1, strict=True)) + dry - abs(q2))
-    return found
+        distances.append(sum(bound * (c - r) for bound, r in zip(limit, r1, strict=True)) + dry - abs(q2))
+    return distances
 
 
 @pytest.mark.parametrize("hub", [0.0, 0.02])
@@ -332,7 +334,7 @@ def test_gears_stay_at_rest_inside_the_zonotope_and_move_outside(hub):
         changes |= {"gears.hub_friction": 0.5, "gears.pinion_hub_radius": hub / 0.5 * R1}
     m, y = standing(changes)
     forces_at_shafts(m, 0.0, y)
-    load = float(sum(one["force"] for one in m.work.notes.pair[: m.work.notes.count]))
+    load = float(sum(contact["force"] for contact in m.work.notes.pair[: m.work.notes.count]))
     assert m.work.notes.count >= 2
     rng = np.random.default_rng(1)
     for _ in range(1000):
@@ -353,7 +355,7 @@ def test_what_begins_to_move_from_rest_meets_gauss_principle():
     mu = 0.3
     m, y = standing({"contact.friction": mu})
     forces_at_shafts(m, 0.0, y)
-    load = float(sum(one["force"] for one in m.work.notes.pair[: m.work.notes.count]))
+    load = float(sum(contact["force"] for contact in m.work.notes.pair[: m.work.notes.count]))
     a1, a2 = float(m.scene.pinion_inverse_mass), float(m.scene.gear_inverse_mass)
     rng = np.random.default_rng(2)
     for _ in range(200):
@@ -361,11 +363,15 @@ def test_what_begins_to_move_from_rest_meets_gauss_principle():
         rates, _ = acceleration(m, y, (load * rng.uniform(-1.0, 3.0), dry))
         _, q1, q2 = forces_at_shafts(m, 0.0, y)
         noted = m.work.notes.pair[: m.work.notes.count]
-        r1 = [float(m.scene.start_radius + one["position"]) for one in noted]
-        own = m.scene.friction
+        r1 = [float(m.scene.start_radius + contact["position"]) for contact in noted]
+        friction = m.scene.friction
         elements = [
-            (own.pinion_lever * r, -own.gear_lever * (own.radii - r), mu * float(one["force"]))
-            for r, one in zip(r1, noted, strict=True)
+            (
+                friction.pinion_lever * r,
+                -friction.gear_lever * (friction.radii - r),
+                mu * float(contact["force"]),
+            )
+            for r, contact in zip(r1, noted, strict=True)
         ] + [(0.0, 1.0, dry)]
 
         def constraint(pinion, gear, q1=q1, q2=q2, elements=elements):
@@ -384,7 +390,7 @@ def test_a_train_held_by_friction_does_not_move_at_all():
     """Pairs on both sides of the pitch point hold what dry resistance leaves, to the last bit."""
     m, y = standing({"contact.friction": 0.5})
     forces_at_shafts(m, 0.0, y)
-    load = float(sum(one["force"] for one in m.work.notes.pair[: m.work.notes.count]))
+    load = float(sum(contact["force"] for contact in m.work.notes.pair[: m.work.notes.count]))
     balanced = load * float(m.scene.force_unit)
     scene = HIGH.replace(
         {
@@ -465,7 +471,7 @@ def test_gears_that_start_stop_and_turn_back_close_their_balance(name, hubs):
     balance = solution.balance
     assert solution.status == "finished"
     assert abs(balance.residual) < balance.bound(1e-6, roller=False)
-    lost = [getattr(balance, one) for one in LOSSES]
+    lost = [getattr(balance, loss) for loss in LOSSES]
     assert min(lost) >= 0.0
     assert lost[0] > 1e-4 * balance.throughput
     assert (lost[2] > 0.0) == (lost[3] > 0.0) == bool(hubs)
@@ -479,7 +485,7 @@ def test_slow_gears_close_their_balance(hubs):
     for solution, rtol in ((rough, 1e-6), (sharp, 1e-8)):
         balance = solution.balance
         assert abs(balance.residual) < balance.bound(rtol, roller=False)
-        assert min(getattr(balance, one) for one in LOSSES) >= 0.0
+        assert min(getattr(balance, loss) for loss in LOSSES) >= 0.0
     assert rough.samples["gear_speed"][-1] == pytest.approx(sharp.samples["gear_speed"][-1], rel=1e-5, abs=0)
 
 
@@ -598,13 +604,13 @@ def test_limits_of_elastic_bodies_add_up_over_the_materials(pairing, rate):
     scene = HIGH.replace(
         {"coating.sam_fraction": 0.5, "coating.pairing": pairing, "coating.thickness": "1 nm"}
     )
-    given, exchanged = (
+    bodies, exchanged = (
         limits(scene.replace({"contact.friction": a, "coating.friction": b}), 12e-9, rate)
         for a, b in ((0.3, 0.1), (0.1, 0.3))
     )
-    assert given[1].max() > 0.0
-    np.testing.assert_allclose(given[0] + exchanged[0], 0.4 * given[1], rtol=1e-9)
-    assert not np.allclose(given[0], exchanged[0], rtol=1e-2)
+    assert bodies[1].max() > 0.0
+    np.testing.assert_allclose(bodies[0] + exchanged[0], 0.4 * bodies[1], rtol=1e-9)
+    assert not np.allclose(bodies[0], exchanged[0], rtol=1e-2)
 
 
 def test_the_limit_of_elastic_bodies_is_not_that_of_rigid_ones_at_their_gap():
@@ -622,9 +628,9 @@ def test_elastic_gears_with_hubs_close_their_balance_over_many_events(mu):
     """The losses of a step that ends at an event need the deflections at the times inside it."""
     bare = {"coating.sam_fraction": 0.0, "contact.friction": mu, "contact.bodies": "elastic"}
     scene = HIGH.replace({**HUBS, **bare, "run.duration": 1e-5, "run.samples": "off", "run.rtol": 1e-8})
-    found = run(scene)
-    assert len(found.events) > 50
-    assert_balanced(found.balance, scene)
+    solution = run(scene)
+    assert len(solution.events) > 50
+    assert_balanced(solution.balance, scene)
 
 
 def test_a_friction_loss_of_elastic_bodies_with_different_coefficients_is_that_of_rigid_ones():

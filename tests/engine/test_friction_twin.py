@@ -24,7 +24,7 @@ MEAN = HIGH.replace({"contact.bodies": "rigid", "contact.asperity": "dmt", "mesh
 
 def friction_loss(balance):
     """Losses by friction of flanks and hubs [J]."""
-    return sum(balance[name] for name, each in LOSSES.items() if each.group == "friction")
+    return sum(balance[name] for name, term in LOSSES.items() if term.group == "friction")
 
 
 # -- rest ------------------------------------------------------------------------------------------------------------
@@ -49,7 +49,7 @@ def test_least_constraint_is_the_quadratic_programme(seed, drift):
     inertia, force, rows, along, limits = elements(seed, drift)
     free, n = force / inertia, len(rows)
     a, stuck = least_constraint(inertia, force, rows, along, limits)
-    found = minimize(
+    optimum = minimize(
         lambda x: 0.5 * inertia @ (x[:2] - free) ** 2 + limits @ x[2:],
         np.concatenate([free, np.abs(rows @ free + along) + 0.1]),
         jac=lambda x: np.concatenate([inertia * (x[:2] - free), limits]),
@@ -65,9 +65,9 @@ def test_least_constraint_is_the_quadratic_programme(seed, drift):
         options={"ftol": 1e-14, "maxiter": 400},
     )
     least = constraint(inertia, free, rows, along, limits, a)
-    assert least <= constraint(inertia, free, rows, along, limits, found.x[:2]) + 1e-12
+    assert least <= constraint(inertia, free, rows, along, limits, optimum.x[:2]) + 1e-12
     # strictly convex: the distance of two points is bounded by the difference of their values
-    np.testing.assert_allclose(a, found.x[:2], rtol=0, atol=1e-5)
+    np.testing.assert_allclose(a, optimum.x[:2], rtol=0, atol=1e-5)
     np.testing.assert_allclose((rows @ a + along)[list(stuck)], 0.0, atol=1e-12)
 
 

@@ -199,7 +199,7 @@ def drawn(rng, *, with_joints=False):
     m, y = standing(scene)
     m.scene.torque[1].constant = 0.0
     forces_at_shafts(m, 0.0, y)
-    load = sum(abs(float(one["force"])) for one in m.work.notes.pair[: m.work.notes.count])
+    load = sum(abs(float(contact["force"])) for contact in m.work.notes.pair[: m.work.notes.count])
     m.scene.torque[1].constant = rng.uniform(0.0, 1.5) * load
     begin_sliding(m, 0.0, y)
     y[V] = y[W] = 0.0
@@ -210,25 +210,25 @@ def largest_push(m, y, rng):
     """Largest force at the pinion that frictions balance, by a search of its own; -inf if the gear is never held."""
     m.scene.torque[0].constant = 0.0
     _, _, gear = forces_at_shafts(m, 0.0, y)
-    own, notes = m.scene.friction, m.work.notes.pair[: m.work.notes.count]
+    friction, notes = m.scene.friction, m.work.notes.pair[: m.work.notes.count]
     dry, h1, h2 = (
-        float(m.scene.torque[1].constant + own.gear_constant),
-        float(own.pinion_hub),
-        float(own.gear_hub),
+        float(m.scene.torque[1].constant + friction.gear_constant),
+        float(friction.pinion_hub),
+        float(friction.gear_hub),
     )
     pin = np.array(pin_force(m, 0.0, y, 0.0))
-    held = float(own.pinion_constant + own.pin * np.hypot(*pin))
+    held = float(friction.pinion_constant + friction.pin * np.hypot(*pin))
     levers, limits, axes, total = [], [], [], np.zeros(2)
-    for one in notes:
-        coast = flank_of_history(m, int(one["history"])) == COAST
-        line = np.array([-own.cosine, -own.sine] if coast else [1.0, 0.0])
-        total += float(one["force"]) * line
-        if m.state.history[int(one["history"])].slide == 0:
+    for contact in notes:
+        coast = flank_of_history(m, int(contact["history"])) == COAST
+        line = np.array([-friction.cosine, -friction.sine] if coast else [1.0, 0.0])
+        total += float(contact["force"]) * line
+        if m.state.history[int(contact["history"])].slide == 0:
             continue
-        r1 = float(m.scene.start_radius + one["position"])
-        levers.append((own.pinion_lever * r1, -own.gear_lever * (own.radii - r1)))
-        limits.append(float(one["limit"]))
-        axes.append([own.sine, -own.cosine] if coast else [0.0, 1.0])
+        r1 = float(m.scene.start_radius + contact["position"])
+        levers.append((friction.pinion_lever * r1, -friction.gear_lever * (friction.radii - r1)))
+        limits.append(float(contact["limit"]))
+        axes.append([friction.sine, -friction.cosine] if coast else [0.0, 1.0])
     levers, limits, axes = np.array(levers).reshape(-1, 2), np.array(limits), np.array(axes).reshape(-1, 2)
 
     def load(f):
@@ -258,12 +258,12 @@ def largest_push(m, y, rng):
             lambda f: -push(f),
             0.999 * start * limits,
             jac=lambda f: -levers[:, 0] - h1 * axes @ (total - pin + f @ axes) / max(pinion_load(f), 1e-300),
-            bounds=[(-one, one) for one in limits],
+            bounds=[(-limit, limit) for limit in limits],
             constraints=sides,
             method="SLSQP",
             options={"ftol": 1e-16, "maxiter": 300},
         )
-        if min(one["fun"](answer.x) for one in sides) > -1e-10 * limits.max(initial=1.0):
+        if min(side["fun"](answer.x) for side in sides) > -1e-10 * limits.max(initial=1.0):
             best = max(best, push(answer.x))
     return best
 
@@ -321,11 +321,11 @@ def test_a_train_that_begins_to_move_agrees_with_its_directions_of_slip(with_joi
         assert m.state.slip * gear >= -1e-9 * size
         if int(m.scene.friction.pinion_rubs) != 0:
             assert m.state.pinion_slip * pinion >= -1e-9 * size
-        own = m.scene.friction
-        for one in m.work.notes.pair[: m.work.notes.count]:
-            r1 = float(m.scene.start_radius + one["position"])
-            slides = own.pinion_lever * r1 * pinion - own.gear_lever * (own.radii - r1) * gear
-            slide = int(m.state.history[int(one["history"])].slide)
+        friction = m.scene.friction
+        for contact in m.work.notes.pair[: m.work.notes.count]:
+            r1 = float(m.scene.start_radius + contact["position"])
+            slides = friction.pinion_lever * r1 * pinion - friction.gear_lever * (friction.radii - r1) * gear
+            slide = int(m.state.history[int(contact["history"])].slide)
             if slide in (-1, 1):
                 assert slide * slides >= -1e-9 * size
     assert moving > 40
@@ -365,8 +365,8 @@ def test_a_rolling_pair_that_is_let_go_slides_as_its_speed_goes_on():
 
 def ratio_of_levers(m, which):
     """Surface velocity of the gear over that of the pinion at which a pair of the notes rolls."""
-    own, r1 = m.scene.friction, float(m.scene.start_radius + m.work.notes.pair[which]["position"])
-    return float(own.pinion_lever * r1 / (own.gear_lever * (own.radii - r1)))
+    friction, r1 = m.scene.friction, float(m.scene.start_radius + m.work.notes.pair[which]["position"])
+    return float(friction.pinion_lever * r1 / (friction.gear_lever * (friction.radii - r1)))
 
 
 def slide_at(m, y, drive, which):

@@ -44,12 +44,12 @@ def test_both_ways_give_the_same_state_and_rates(share, stepped):
     end = float(s.clock[0])
     assert end > begin
     assert sun.exports("IDAGetSolution")  # or there would be nothing to compare
-    found = []
+    states = []
     for way in (interpolation.solution_as_ida, interpolation.solution_as_documented):
         s.y[:] = s.yp[:] = np.nan
         assert way(s.handles[IDA], begin + share * (end - begin), s.handles[Y], s.handles[YP]) == 0
-        found.append((s.y.copy(), s.yp.copy()))
-    for ida, documented in zip(*found, strict=True):
+        states.append((s.y.copy(), s.yp.copy()))
+    for ida, documented in zip(*states, strict=True):
         np.testing.assert_allclose(documented, ida, rtol=0.0, atol=1e-12 * abs(ida).max())
 
 

@@ -105,13 +105,13 @@ class Rigid:
         load, force = 3e-11 + 2e-14 * w + 8e-18 * w * w, 4e-7
         for _ in range(50):
             loads = np.hypot(*(pin - force * self.line)), abs(force), np.hypot(*pin)
-            own = mu * HUBS[0] * (loads[0] + gears.pinion_hub_adhesion) + mu_pin * PIN * loads[2]
-            own += mu * gears.pinion_dimple_radius * gears.pinion_axial_load
+            drag = mu * HUBS[0] * (loads[0] + gears.pinion_hub_adhesion) + mu_pin * PIN * loads[2]
+            drag += mu * gears.pinion_dimple_radius * gears.pinion_axial_load
             other = mu * HUBS[1] * (loads[1] + gears.gear_hub_adhesion)
             other += mu * gears.gear_dimple_radius * gears.gear_axial_load
             ratio = R2 / R1
             inertia = gears.gear_inertia + gears.pinion_inertia * ratio**2
-            acceleration = ((torque - own) * ratio - load - other) / inertia
+            acceleration = ((torque - drag) * ratio - load - other) / inertia
             before, force = force, (gears.gear_inertia * acceleration + load + other) / R2
             if abs(force - before) <= 1e-15 * abs(force):
                 break
@@ -132,7 +132,7 @@ class Rigid:
         )
         time = np.linspace(duration - turns / hertz, duration, 3001)
         angle, speed = answer.sol(time)
-        rows = [self.at(*one) for one in zip(time, angle, speed, strict=True)]
+        rows = [self.at(*sample) for sample in zip(time, angle, speed, strict=True)]
         loads, torque, load = (np.array([row[k] for row in rows]) for k in (1, 2, 3))
 
         def mean(values):

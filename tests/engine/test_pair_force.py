@@ -48,7 +48,7 @@ def test_slopes_of_any_law_are_those_of_its_projection(coast, beyond):
         V: (ours.force_v, ours.relief_v),
         W: (ours.force_w, ours.relief_w),
     }
-    largest = max(abs(one) for pair in pairs.values() for one in pair)
+    largest = max(abs(value) for pair in pairs.values() for value in pair)
     for place, exact in pairs.items():
         np.testing.assert_allclose(slope(place, 1e-5), exact, rtol=0, atol=1e-8 * largest)
     exact = np.array([ours.force_phase, ours.relief_phase])

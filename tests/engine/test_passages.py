@@ -75,19 +75,19 @@ def test_a_row_for_each_mesh_exit(backend):
         np.testing.assert_array_equal(getattr(rows, name), getattr(run.events, name)[exits])
     onsets = run.events.time[run.events.kind == EventKind.ONSET]
     for flank in (0, 1):
-        own = rows.flank == flank
-        made = np.searchsorted(onsets, rows.time[own], side="right")
-        np.testing.assert_array_equal(rows.impacts[own], np.diff(made, prepend=0))
+        on_flank = rows.flank == flank
+        made = np.searchsorted(onsets, rows.time[on_flank], side="right")
+        np.testing.assert_array_equal(rows.impacts[on_flank], np.diff(made, prepend=0))
 
 
 def test_both_drivers_agree():
     native_run, other = (solve(LOW, backend=name, rtol=1e-8) for name in ("native", "sksundae"))
     assert len(native_run.passages) == len(other.passages) > 2
     for name in Passages.columns:
-        one, two = getattr(native_run.passages, name), getattr(other.passages, name)
+        first, second = getattr(native_run.passages, name), getattr(other.passages, name)
         # a thousand tolerances, over the largest of the numbers; peaks of the force as accurate as the step's formula
         accuracy = 1e-4 if name.endswith("_force") else 1e-5
-        np.testing.assert_allclose(one, two, rtol=0.0, atol=accuracy * max(np.abs(one).max(), 1e-300))
+        np.testing.assert_allclose(first, second, rtol=0.0, atol=accuracy * max(np.abs(first).max(), 1e-300))
 
 
 def test_without_passages_the_run_is_the_same(backend):
@@ -102,8 +102,8 @@ def test_without_passages_the_run_is_the_same(backend):
 def test_without_a_balance_the_sums_are_missing():
     whole, rows = solve(FAST).passages, solve(FAST.replace({"run.balance": False})).passages
     for name in Passages.columns:
-        one, two = getattr(whole, name), getattr(rows, name)
-        np.testing.assert_array_equal(np.full(len(one), np.nan) if name in TERMS else one, two)
+        first, second = getattr(whole, name), getattr(rows, name)
+        np.testing.assert_array_equal(np.full(len(first), np.nan) if name in TERMS else first, second)
 
 
 # -- running sums ----------------------------------------------------------------------------------------------------
@@ -131,7 +131,7 @@ def test_the_sums_are_those_of_the_energy_balance(losses, backend, monkeypatch):
             assert getattr(rows, name)[place] == pytest.approx(balance[name], rel=1e-12, abs=rounding)
     assert seen > 0
     # every row closes as well as the run, whose bound grows with the energy exchanged
-    closes = sum(each.sign * getattr(rows, name) for name, each in TERMS.items())
+    closes = sum(term.sign * getattr(rows, name) for name, term in TERMS.items())
     last = blocks[-1].balance
     assert_balanced(last, scene)
     assert np.abs(closes).max() <= last.bound(scene.run.rtol, roller=False)
@@ -154,7 +154,7 @@ def test_energy_per_tooth_needs_no_chain_of_runs():
         sums.append({name: float(part[name]) for name in TERMS})
         before = end
     for name in ("drive_work", "adhesion_loss", "damping_loss", "kinetic_change"):
-        chain = np.diff([each[name] for each in sums])
+        chain = np.diff([energies[name] for energies in sums])
         table = np.diff(getattr(rows, name)[drive])
         # the motion of the chain is another one within the tolerance, after which vibrations have decayed or not
         np.testing.assert_allclose(table, chain, rtol=1e-4, atol=1e-6 * sums[-1]["drive_work"])
@@ -169,10 +169,10 @@ def test_forces_are_those_between_mesh_exits():
     rows, force = run.passages, run.samples["mesh_force"]
     scale = np.abs(force).max()
     for flank in (0, 1):
-        own = np.flatnonzero(rows.flank == flank)
-        assert len(own) > 1
-        bounds = np.searchsorted(run.time, [0.0, *rows.time[own]])
-        for place, low, high in zip(own, bounds[:-1], bounds[1:], strict=True):
+        exits = np.flatnonzero(rows.flank == flank)
+        assert len(exits) > 1
+        bounds = np.searchsorted(run.time, [0.0, *rows.time[exits]])
+        for place, low, high in zip(exits, bounds[:-1], bounds[1:], strict=True):
             piece = force[low:high]
             assert -1e-6 * scale <= rows.largest_force[place] - piece.max() <= 1e-3 * scale
             assert -1e-6 * scale <= piece.min() - rows.smallest_force[place] <= 1e-3 * scale
@@ -181,12 +181,12 @@ def test_forces_are_those_between_mesh_exits():
 def test_extremes_of_the_run_are_among_those_of_its_passages():
     run = solve(FAST)
     for flank in (0, 1):
-        own = run.passages.flank == flank
-        until = run.passages.time[own][-1]
+        on_flank = run.passages.flank == flank
+        until = run.passages.time[on_flank][-1]
         if run.extremes.largest_mesh_force_time <= until:
-            assert run.passages.largest_force[own].max() == run.extremes.largest_mesh_force
+            assert run.passages.largest_force[on_flank].max() == run.extremes.largest_mesh_force
         if run.extremes.smallest_mesh_force_time <= until:
-            assert run.passages.smallest_force[own].min() == run.extremes.smallest_mesh_force
+            assert run.passages.smallest_force[on_flank].min() == run.extremes.smallest_mesh_force
 
 
 def test_force_at_onsets_and_separations(backend):
@@ -199,9 +199,9 @@ def test_force_at_onsets_and_separations(backend):
     contact = np.isin(events.kind, (EventKind.ONSET, EventKind.SEPARATION))
     assert contact.sum() > 1
     assert np.isnan(events.force[~contact]).all()
-    found = np.interp(events.time[contact], run.time, force)
+    interpolated = np.interp(events.time[contact], run.time, force)
     # between two samples the force is no straight line
-    np.testing.assert_allclose(events.force[contact], found, rtol=0.0, atol=1e-4 * np.abs(force).max())
+    np.testing.assert_allclose(events.force[contact], interpolated, rtol=0.0, atol=1e-4 * np.abs(force).max())
 
 
 # -- in pieces -------------------------------------------------------------------------------------------------------
@@ -225,8 +225,8 @@ def test_a_chain_goes_on_with_its_sums():
     assert chain.sizes["passage"] == whole.sizes["passage"]
     for name in ("pair", "flank", "impacts", "drive_work", "largest_force", "smallest_force"):
         # a start in between changes the steps, and chaotic impacts a little
-        one, other = chain[f"passage_{name}"].values, whole[f"passage_{name}"].values
-        np.testing.assert_allclose(one[:4], other[:4], rtol=1e-3)
+        joined, expected = chain[f"passage_{name}"].values, whole[f"passage_{name}"].values
+        np.testing.assert_allclose(joined[:4], expected[:4], rtol=1e-3)
 
 
 def test_passages_begin_where_they_are_asked_for():

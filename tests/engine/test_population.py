@@ -67,12 +67,12 @@ def test_a_roller_meets_three_asperities(backend, rtol, allowed):
     told = NUMBERS["roller"]["bare"]
     solution = run(ROLLER.replace({"run.rtol": rtol}), backend)
     places = [2, 0, 1]  # of the reference's asperities in the order of places
-    wanted = [(KINDS[one["kind"]], 0, 0, places.index(one["asperity"])) for one in told["events"]]
+    wanted = [(KINDS[event["kind"]], 0, 0, places.index(event["asperity"])) for event in told["events"]]
     what, times = asperity_events(solution)
     assert what == [(int(kind), *rest) for kind, *rest in wanted]
-    np.testing.assert_allclose(times, [one["t"] for one in told["events"]], rtol=allowed)
+    np.testing.assert_allclose(times, [event["t"] for event in told["events"]], rtol=allowed)
     speeds = solution.events.gap_rate[solution.events.asperity >= 0]
-    np.testing.assert_allclose(speeds, [one["speed"] for one in told["events"]], rtol=allowed)
+    np.testing.assert_allclose(speeds, [event["speed"] for event in told["events"]], rtol=allowed)
     extremes = solution.extremes
     assert extremes.final_speed == pytest.approx(told["rebound"], rel=allowed)
     assert extremes.largest_mesh_force == pytest.approx(told["peak_force"], rel=allowed)
@@ -206,7 +206,7 @@ def test_at_a_start_what_overlaps_is_joined():
     pitch = scene.geometry.base_pitch
     overlaps = [contact.overlap(phase + i * pitch, 12e-9, arc, z)[0] for i in (0, 1) for arc, z in tips]
     solution = run(scene)
-    assert solution.samples["asperities_in_contact"][0] == sum(one > 0.0 for one in overlaps) > 0
+    assert solution.samples["asperities_in_contact"][0] == sum(overlap > 0.0 for overlap in overlaps) > 0
 
 
 # -- forces ----------------------------------------------------------------------------------------------------------

@@ -53,16 +53,18 @@ def asperity_events(ds):
 
 def counted(ds):
     """Contacts and lost energy [J] over flank, material, tooth and place, from the events one by one."""
-    scene, names = ds.gearidae.scene, [each.name for each in ds.gearidae.scene.materials()]
-    tips = {each.name: Tip(each.surface, scene.surface.asperity_radius) for each in scene.materials()}
-    flanks = {(one.tooth, one.flank): one for one in flanks_of(scene)}
+    scene, names = ds.gearidae.scene, [material.name for material in ds.gearidae.scene.materials()]
+    tips = {
+        material.name: Tip(material.surface, scene.surface.asperity_radius) for material in scene.materials()
+    }
+    flanks = {(flank.tooth, flank.flank): flank for flank in flanks_of(scene)}
     contacts, lost = np.zeros((2, 2, len(names), 19, PLACES))
     for kind, pair, coast, asperity, _ in asperity_events(ds):
         pinion, gear = met_teeth(pair, coast=bool(coast))
-        one = flanks[int(pinion) % 19, coast]
-        name = MATERIAL_NAMES[materials_at(scene, one, int(gear))[asperity]]
-        place = min(int(PLACES * along_path(scene, one)[asperity]), PLACES - 1)
-        where = coast, names.index(name), one.tooth, place
+        flank = flanks[int(pinion) % 19, coast]
+        name = MATERIAL_NAMES[materials_at(scene, flank, int(gear))[asperity]]
+        place = min(int(PLACES * along_path(scene, flank)[asperity]), PLACES - 1)
+        where = coast, names.index(name), flank.tooth, place
         joins = kind == EventKind.ASPERITY_ONSET
         contacts[where] += joins
         lost[where] += tips[name].joining if joins else tips[name].letting_go
@@ -98,11 +100,11 @@ def shares_of_places(ds):
         for tooth in range(19):
             f = _along(pinion, tooth, at)
             g = np.mean([_along(gear, tooth + flank + 19 * turn, at) for turn in range(4)], axis=0)
-            own = {"coated": f, "bare": 1.0 - f}
+            fractions = {"coated": f, "bare": 1.0 - f}
             if coating.pairing == "independent":
-                own = {"coated": f * g, "bare": (1 - f) * (1 - g), "mixed": f + g - 2 * f * g}
+                fractions = {"coated": f * g, "bare": (1 - f) * (1 - g), "mixed": f + g - 2 * f * g}
             for number, name in enumerate(ds.material.values):
-                shares[flank, number, tooth] = own[name].reshape(PLACES, -1).mean(axis=1)
+                shares[flank, number, tooth] = fractions[name].reshape(PLACES, -1).mean(axis=1)
     return shares
 
 
@@ -116,10 +118,10 @@ def _along(table, tooth, at):
 
 def test_materials_on_any_tooth_of_the_gear_are_those_on_each():
     scene = GEARS.replace(COATINGS["both sides by tooth"])
-    one = flanks_of(scene)[7]
-    covered, bare = materials_met(scene, one)
+    flank = flanks_of(scene)[7]
+    covered, bare = materials_met(scene, flank)
     for tooth in (0, 3, 75):
-        there = materials_at(scene, one, tooth)
+        there = materials_at(scene, flank, tooth)
         assert ((there == covered) | (there == bare)).all()
         assert len(set(there.tolist())) == 3
 
@@ -128,9 +130,9 @@ def test_a_table_of_equal_teeth_is_one_number():
     """To the last bit of the motion, as the same asperities join."""
     plain = GEARS.replace({"coating.pairing": "independent", "coating.sam_fraction": 0.4})
     table = plain.replace({"coating.gear_table": [[0.4]] * 76})
-    one, other = solve(plain), solve(table)
-    assert np.array_equal(one.events.time, other.events.time)
-    assert np.array_equal(one.events.asperity, other.events.asperity)
+    single, other = solve(plain), solve(table)
+    assert np.array_equal(single.events.time, other.events.time)
+    assert np.array_equal(single.events.asperity, other.events.asperity)
 
 
 def spans_of(ds):
@@ -160,7 +162,7 @@ def test_sliding_work_and_pressure_are_those_of_the_samples():
         here = np.flatnonzero((time > start) & (time < end))
         arc, height, radius = (LISTED[name][asperity] for name in ("arc", "height", "radius"))
         xi = phase[here] - pair * g.base_pitch
-        overlaps = [contact.overlap(*one, arc, height)[0] for one in zip(xi, gap[here], strict=True)]
+        overlaps = [contact.overlap(*sample, arc, height)[0] for sample in zip(xi, gap[here], strict=True)]
         forces.setdefault(pair, np.zeros(time.size))[here] += Tip(scene.surface, radius).load(
             np.array(overlaps)
         )
@@ -191,8 +193,13 @@ def test_sliding_work_and_pressure_are_those_of_the_samples():
 )
 def test_each_asperity_rubs_at_its_own_place(changes):
     """Against samples: a sum over 20,001 of them, of forces that jump at events, is good to 1e-3."""
-    own = {"contact.asperities": LISTED, "coating.sam_fraction": 0.0, "run.samples": 20_001, "run.rtol": 1e-8}
-    ds = gd.simulate(GEARS.replace(own | changes))
+    listed = {
+        "contact.asperities": LISTED,
+        "coating.sam_fraction": 0.0,
+        "run.samples": 20_001,
+        "run.rtol": 1e-8,
+    }
+    ds = gd.simulate(GEARS.replace(listed | changes))
     scene = ds.gearidae.scene
     contact, g, time = Contact(scene), scene.geometry, ds.time.values
     law = ListedAsperities(scene, [LISTED[name] for name in ("arc", "height", "radius")], 0.3, 1e9)
@@ -201,17 +208,18 @@ def test_each_asperity_rubs_at_its_own_place(changes):
     gap = 0.5 * scene.mesh.backlash - ds.transmission_error.values
     first = g.base_radius_pinion * np.tan(scene.gears.pressure_angle) - g.approach
     loads, limits = {}, {}
-    for pair, one, start, end in spans_of(ds):
+    for pair, asperity, start, end in spans_of(ds):
         here = np.flatnonzero((time > start) & (time < end))
         xi = phase[here] - pair * g.base_pitch
         overlap = [
-            contact.overlap(*at, law.arcs[one], law.heights[one])[0] for at in zip(xi, gap[here], strict=True)
+            contact.overlap(*at, law.arcs[asperity], law.heights[asperity])[0]
+            for at in zip(xi, gap[here], strict=True)
         ]
-        cube = jkr(np.maximum(np.array(overlap) / law.dc[one], -1.0))
-        load = 2.0 * law.pc[one] * (cube - np.sqrt(2.0 * cube))
-        area = np.pi * (3.0 * law.radii[one] * law.pc[one] / (2.0 * law.modulus) * cube) ** (2 / 3)
+        cube = jkr(np.maximum(np.array(overlap) / law.dc[asperity], -1.0))
+        load = 2.0 * law.pc[asperity] * (cube - np.sqrt(2.0 * cube))
+        area = np.pi * (3.0 * law.radii[asperity] * law.pc[asperity] / (2.0 * law.modulus) * cube) ** (2 / 3)
         for table, values in ((loads, load), (limits, 1e9 * area)):
-            table.setdefault(pair, np.zeros((time.size, len(law.arcs))))[here, one] += values
+            table.setdefault(pair, np.zeros((time.size, len(law.arcs))))[here, asperity] += values
     work = np.zeros((19, PLACES))
     for pair, load in loads.items():
         inside = first + np.clip(phase - pair * g.base_pitch, 0.0, g.path_length)
@@ -238,7 +246,7 @@ def test_each_asperity_rubs_at_its_own_place(changes):
 def test_a_life_of_real_asperities(energy):
     """By cycle jumps, or where coverage is lost too fast for that cycle by cycle, each with what the last has left."""
     scene = GEARS.replace({"coating.sam_fraction": 0.9, "run.exposures": 0})
-    found = gd.studies.life(
+    life = gd.studies.life(
         scene,
         gd.wear.loss_law("adhesion_work", energy=energy),
         fraction=0.6,
@@ -250,10 +258,10 @@ def test_a_life_of_real_asperities(energy):
         frequency=False,
         jobs=1,
     )
-    coverage = found.coverage.values
-    assert found.attrs["ending"] == "coverage"
+    coverage = life.coverage.values
+    assert life.attrs["ending"] == "coverage"
     assert coverage[-1] < 0.6 + 1e-9 < coverage[0] == 0.9
     assert (np.diff(coverage) < 0.0).all()
-    assert (found.attrs["mesh_cycles_direct"] > 0) == (energy != "10 J/m^2")
-    loss = found.coverage_loss.values[0, 0] * float(energy.split()[0])
-    assert abs(loss) == pytest.approx(0.9 * float(found.passage_adhesion_work.values[0, 0]), rel=1e-9)
+    assert (life.attrs["mesh_cycles_direct"] > 0) == (energy != "10 J/m^2")
+    loss = life.coverage_loss.values[0, 0] * float(energy.split()[0])
+    assert abs(loss) == pytest.approx(0.9 * float(life.passage_adhesion_work.values[0, 0]), rel=1e-9)

@@ -56,8 +56,8 @@ def test_its_slopes_are_in_the_jacobian(direction, joined):
 
     def differences(on):
         m.scene.radius_force = on
-        found = np.empty(n * n)
-        jacobian(m, 0.0, cj, y, found)
+        matrix = np.empty(n * n)
+        jacobian(m, 0.0, cj, y, matrix)
         numeric = np.empty(n)
         for column in range(n):
             out = np.empty((2, n))
@@ -65,7 +65,7 @@ def test_its_slopes_are_in_the_jacobian(direction, joined):
             residual(m, 0.0, y + step, yp, out[0])
             residual(m, 0.0, y - step, yp, out[1])
             numeric[column] = (out[0] - out[1])[W] / 2e-6
-        return found.reshape(n, n).T[W], numeric
+        return matrix.reshape(n, n).T[W], numeric
 
     (with_it, numeric), (without, as_numeric) = differences(1), differences(0)
     ours, wanted = (with_it - without)[[U, PHASE]], (numeric - as_numeric)[[U, PHASE]]

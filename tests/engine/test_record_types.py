@@ -29,17 +29,17 @@ def record():
 
 
 def test_fields_are_attributes_that_can_be_set_at_any_depth():
-    one = record()
-    one.count = 3
-    one.inner.weight = 1.5
-    one.inner.places[1] = 2.5
-    one.several[1].weight = 4.5
-    one.several["places"] = 0.5
-    assert one.item()[0] == 3
-    assert one.inner.weight == one["inner"]["weight"] == 1.5
-    assert one.inner.places.tolist() == [0.0, 2.5, 0.0]
-    assert one.several["weight"].tolist() == [0.0, 4.5]
-    assert one.several[0].places.tolist() == [0.5] * 3
+    first = record()
+    first.count = 3
+    first.inner.weight = 1.5
+    first.inner.places[1] = 2.5
+    first.several[1].weight = 4.5
+    first.several["places"] = 0.5
+    assert first.item()[0] == 3
+    assert first.inner.weight == first["inner"]["weight"] == 1.5
+    assert first.inner.places.tolist() == [0.0, 2.5, 0.0]
+    assert first.several["weight"].tolist() == [0.0, 4.5]
+    assert first.several[0].places.tolist() == [0.5] * 3
 
 
 def test_what_is_no_field_is_refused():
@@ -95,7 +95,7 @@ def test_the_type_of_a_model_has_a_short_name():
 
 def test_types_that_differ_are_not_called_the_same():
     class Pair(NamedTuple):
-        one: float
+        first: float
         other: float
 
     kinds = [Pair(1.0, 2.0), Pair(1, 2)]

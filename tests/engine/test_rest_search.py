@@ -221,7 +221,7 @@ LANDED = 0.1
 
 def rests(*seconds):
     """Lengths of a rest [s], of which the shortest is always tested and the longest before a release."""
-    return [pytest.param(each, marks=() if each == min(seconds) else pytest.mark.by_hand) for each in seconds]
+    return [pytest.param(rest, marks=() if rest == min(seconds) else pytest.mark.by_hand) for rest in seconds]
 
 
 @pytest.mark.parametrize("seconds", rests(10.0, 1e4))

@@ -30,20 +30,20 @@ NOT_CARRIED = {"light", "energy", "history"}
 @pytest.fixture
 def changes(monkeypatch):
     """Times at which a run changes its contact model, in the order of the changes."""
-    found = []
+    switches = []
 
     def note(name):
         change = getattr(backend, name)
 
         def noted(old, new, checkpoint):
-            found.append((name, old.restore(checkpoint, np.empty(old.start.size)) * old.time_unit))
+            switches.append((name, old.restore(checkpoint, np.empty(old.start.size)) * old.time_unit))
             return change(old, new, checkpoint)
 
         monkeypatch.setattr(backend, name, noted)
 
     note("change_over")
     note("lighten")
-    return found
+    return switches
 
 
 def run(scene, driver, resume=None):
@@ -72,9 +72,9 @@ def test_auto_decides_with_friction_too(changes):
     assert "change_over" in [name for name, _ in changes]
     assert ds.attrs["contact_bodies"] == "elastic"
     assert ds.attrs["contact_bodies_reason"].startswith("auto: ")
-    found = ds.gearidae.energy_balance
-    assert abs(found["residual"]) < found["residual_bound"]
-    assert found["drive_friction_loss"] > 0.0
+    balance = ds.gearidae.energy_balance
+    assert abs(balance["residual"]) < balance["residual_bound"]
+    assert balance["drive_friction_loss"] > 0.0
     rigid = gd.simulate(scene.replace({"contact.bodies": "rigid", "run.duration": 1e-6}))
     assert rigid.attrs["contact_bodies"] == "rigid"
     assert rigid.attrs["contact_bodies_reason"] == ""
@@ -86,30 +86,30 @@ def test_auto_decides_with_friction_too(changes):
 
 @pytest.mark.parametrize("driver", ["native", "sksundae"])
 def test_a_run_with_one_deep_impact_is_elastic_for_as_long_as_it_matters(changes, driver, monkeypatch):
-    found = solve(SCENE, backend=driver)
+    solution = solve(SCENE, backend=driver)
     assert [name for name, _ in changes] == ["change_over", "lighten"]
-    of_drive = (found.events.kind == EventKind.MESH_EXIT) & (found.events.flank == Flank.DRIVE)
-    exits = found.events.time[of_drive]
+    of_drive = (solution.events.kind == EventKind.MESH_EXIT) & (solution.events.flank == Flank.DRIVE)
+    exits = solution.events.time[of_drive]
     deep, light = (time for _, time in changes)
     assert light == pytest.approx(exits[exits > deep][3], rel=1e-12, abs=0)  # the fourth exit since
-    assert found.statistics.skipped["elastic_deflection"] == 0
+    assert solution.statistics.skipped["elastic_deflection"] == 0
     monkeypatch.setattr(build, "LIGHTER", np.inf)
     stays = solve(SCENE, backend=driver)
     assert len(changes) == 3  # it has changed to elastic bodies once more, and not returned
-    speed, other = (each.samples["gear_speed"] for each in (found, stays))
-    np.testing.assert_array_equal(speed[found.time < light], other[found.time < light])
+    speed, other = (run.samples["gear_speed"] for run in (solution, stays))
+    np.testing.assert_array_equal(speed[solution.time < light], other[solution.time < light])
     # from then on contacts differ by what deflections below a fiftieth of the roughness do to them
     np.testing.assert_allclose(speed, other, rtol=0, atol=1e-3 * np.ptp(other))
-    assert abs(found.balance.residual) < found.balance.bound(SCENE.run.rtol, roller=False)
-    assert 0.0 < abs(found.balance.model_change) < 1e-4 * found.balance.throughput
+    assert abs(solution.balance.residual) < solution.balance.bound(SCENE.run.rtol, roller=False)
+    assert 0.0 < abs(solution.balance.model_change) < 1e-4 * solution.balance.throughput
 
 
 def test_four_exits_are_counted_from_the_last_deep_contact(changes):
     torque = 10.0 * SCENE.drive.torque  # for a microsecond, after the second exit
     knots = [[60e-6, 0.0], [60.1e-6, torque], [61e-6, torque], [61.1e-6, 0.0]]
-    found = solve(SCENE.replace({"drive.schedule": knots, "run.samples": "off"}))
-    of_drive = (found.events.kind == EventKind.MESH_EXIT) & (found.events.flank == Flank.DRIVE)
-    exits = found.events.time[of_drive]
+    solution = solve(SCENE.replace({"drive.schedule": knots, "run.samples": "off"}))
+    of_drive = (solution.events.kind == EventKind.MESH_EXIT) & (solution.events.flank == Flank.DRIVE)
+    exits = solution.events.time[of_drive]
     assert exits[1] < knots[0][0] < exits[2]
     assert [name for name, _ in changes] == ["change_over", "lighten"]
     assert changes[1][1] == pytest.approx(exits[5], rel=1e-12, abs=0)
@@ -126,7 +126,7 @@ def test_a_run_can_be_resumed_before_between_and_after_the_changes(changes, driv
         rest = run(SCENE, driver, block.checkpoint)
         made = tuple(name for name, _ in changes)
         seen.add(made)
-        parts = [each.rows for each in (*whole[: k + 1], *rest)]
+        parts = [piece.rows for piece in (*whole[: k + 1], *rest)]
         np.testing.assert_array_equal(np.concatenate(parts), rows)
         assert_same((rest[-1] if rest else whole[-1]).extremes, whole[-1].extremes)
         assert outlook(SCENE, driver, block.checkpoint)[0]["elastic_deflection"] == made.count("change_over")
@@ -142,10 +142,10 @@ def test_a_run_that_goes_on_is_equal_to_one_without_a_break():
         second = scene.replace({"run.duration": (1.0 - share) * scene.run.duration})
         begun = solve(first)
         start = gd.engine.end_of(first, begun.checkpoint, 0.0)
-        found = solve(second, start=start)
+        continued = solve(second, start=start)
         # a break restarts the solver: equal within what its tolerance does
-        assert found.extremes.final_speed == pytest.approx(whole.extremes.final_speed, rel=1e-5, abs=0)
-        assert found.statistics.skipped["elastic_deflection"] == int(share > 0.5)
+        assert continued.extremes.final_speed == pytest.approx(whole.extremes.final_speed, rel=1e-5, abs=0)
+        assert continued.statistics.skipped["elastic_deflection"] == int(share > 0.5)
 
 
 FREE = {
@@ -177,8 +177,8 @@ def returned():
             resume = block.checkpoint
     problem = make_problem(SCENE)
     bodies = problem.of_checkpoint(resume)
-    for each in (problem, bodies):
-        each.prepare(SCENE.run.rtol, 401)
+    for prepared in (problem, bodies):
+        prepared.prepare(SCENE.run.rtol, 401)
     assert bodies.lightened(resume)
     went_on = lighten(bodies, problem, resume)
     state, y = np.empty(bodies.start.size), np.empty(problem.start.size)

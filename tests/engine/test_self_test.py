@@ -56,10 +56,10 @@ def test_the_error_follows_the_tolerance(way):
 def deaf_solve(newton, start, correction, weights, tolerance, renew, solver):
     """Solve as the driver does, on a copy of the weights: as if IDA handed over one, and heeded its own."""
     t, predicted, rates, yy, yp, rr, cj, data = ptr.system(solver)
-    own = np.empty(STATES)
-    given = ptr.numbers(weights, STATES)
+    copied = np.empty(STATES)
+    ida_weights = ptr.numbers(weights, STATES)
     for j in range(STATES):
-        own[j] = given[j]
+        copied[j] = ida_weights[j]
     attempt = Attempt(
         t,
         ptr.step(solver),
@@ -71,7 +71,7 @@ def deaf_solve(newton, start, correction, weights, tolerance, renew, solver):
         ptr.numbers(yy, STATES),
         ptr.numbers(yp, STATES),
         ptr.numbers(rr, STATES),
-        own,
+        copied,
     )
     return iterate(STATES, model_at(data), attempt)
 

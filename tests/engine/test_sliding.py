@@ -24,12 +24,12 @@ def add(m, start, end, places=(2, 2), bend=0.0):
 
     `bend` is the rate of the sliding speed.
     """
-    own, pitches = m.work.exposing.pair[0], m.scene.bins_per_pitch
+    contact, pitches = m.work.exposing.pair[0], m.scene.bins_per_pitch
     inside = [(place + 0.5) / pitches for place in places]
     force, rate, speed = start
-    own.side = 1 if speed > 0.0 else -1
-    own.time, own.position, own.bin = 0.0, inside[0], places[0]
-    own.power, own.power_rate = force * abs(speed), rate * abs(speed) + own.side * force * bend
+    contact.side = 1 if speed > 0.0 else -1
+    contact.time, contact.position, contact.bin = 0.0, inside[0], places[0]
+    contact.power, contact.power_rate = force * abs(speed), rate * abs(speed) + contact.side * force * bend
     away = inside[1] - m.scene.pitch_point
     sliding = (end[2] / away, bend / away, 0.0)  # the contact does not move along the path
     add_sliding(m, LENGTH, 0, sliding, inside[1], (0.0, 0.0), end[:2])

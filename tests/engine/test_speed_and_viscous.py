@@ -128,9 +128,9 @@ def test_the_jacobian_knows_the_gain_and_the_viscous_drag(touching):
             moved[j] += sign * step
             rates[j] += sign * cj * step
             residual(m, 0.0, moved, rates, f)
-        found = (high - low) / (2 * step)
+        slopes = (high - low) / (2 * step)
         scale = np.abs(out[4 * j : 4 * j + 4]).max()
-        np.testing.assert_allclose(out[4 * j : 4 * j + 4], found, atol=1e-5 * scale, rtol=0)
+        np.testing.assert_allclose(out[4 * j : 4 * j + 4], slopes, atol=1e-5 * scale, rtol=0)
 
 
 def test_newtons_correction_solves_the_linear_equations(touching):

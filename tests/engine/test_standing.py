@@ -149,7 +149,7 @@ def test_a_gear_that_starts_as_free_gears_do_has_not_stood():
     """It leaves two zeros, the later one by a standstill that has ended earlier."""
     sizes = {"pinion": 40e-6, "gear": 100e-6}
     solid = {f"gears.{name}_inertia": 0.5 * math.pi * 2330.0 * 2e-6 * r**4 for name, r in sizes.items()}
-    own = {"gears.pinion_teeth": 24, "gears.gear_teeth": 60, "gears.pinion_base_radius": 40e-6, **solid}
+    geometry = {"gears.pinion_teeth": 24, "gears.gear_teeth": 60, "gears.pinion_base_radius": 40e-6, **solid}
     start = {
         "initial.gear_speed": 0.0,
         "initial.gap": "0.1 um",
@@ -157,7 +157,7 @@ def test_a_gear_that_starts_as_free_gears_do_has_not_stood():
         "run.samples": "off",
     }
     ramp = {"drive.torque": 0.0, "drive.schedule": [(0.0, 0.0), (2.0, 4.8e-18), (2.1, 3.8e-16)]}
-    scene = gd.preset("teodorescu2009_low_speed").replace(own | start | ramp | {"load.torque": 3e-18})
+    scene = gd.preset("teodorescu2009_low_speed").replace(geometry | start | ramp | {"load.torque": 3e-18})
     table = gd.simulate(scene.replace({"run.duration": 2.1})).gearidae.standstills()
     np.testing.assert_allclose(table["begin"], [0.0, 1.824], atol=1e-3)
     np.testing.assert_allclose(

@@ -22,9 +22,9 @@ def growth(order, turned):
     """Largest factor by which a formula on equal steps multiplies an undamped vibration, or an error, in one step."""
     times = 1.0 - np.arange(order + 1)  # the new time first, steps of 1
     weights = []
-    for i, own in enumerate(times):
+    for i, node in enumerate(times):
         others = np.delete(times, i)
-        lagrange = Polynomial.fromroots(others) / np.prod(own - others)
+        lagrange = Polynomial.fromroots(others) / np.prod(node - others)
         area = lagrange.integ()
         weights.append(area(1.0) - area(0.0))
     z = 1j * math.sqrt(turned)

@@ -111,14 +111,14 @@ def test_a_law_does_what_the_same_harmonic_does(shaft):
     )
     amplitude, frequency, phase = 8e-19, 700.0, 0.6
     harmonic = {"amplitude": amplitude, "frequency": frequency, "phase": phase}
-    own = solve(low.replace({f"{shaft}.harmonic": harmonic}))
+    harmonics = solve(low.replace({f"{shaft}.harmonic": harmonic}))
     scene = low.replace({f"{shaft}.law": law("wave", amplitude, frequency, phase)})
     named = solve(scene)
     for name in ("gear_speed", "pinion_speed"):
         # the two units of force differ by a harmonic's part, so that steps do; thirty times their errors
-        np.testing.assert_allclose(named.samples[name], own.samples[name], rtol=1e-4, atol=0)
-    assert named.balance.drive_work == pytest.approx(own.balance.drive_work, rel=1e-5, abs=0)
-    assert named.balance.dry_loss == pytest.approx(own.balance.dry_loss, rel=1e-5, abs=0)
+        np.testing.assert_allclose(named.samples[name], harmonics.samples[name], rtol=1e-4, atol=0)
+    assert named.balance.drive_work == pytest.approx(harmonics.balance.drive_work, rel=1e-5, abs=0)
+    assert named.balance.dry_loss == pytest.approx(harmonics.balance.dry_loss, rel=1e-5, abs=0)
     assert np.count_nonzero(named.events.kind == EventKind.TURNING_POINT) > 3
     assert_balanced(named.balance, scene)
 

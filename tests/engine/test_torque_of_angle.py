@@ -58,7 +58,7 @@ def microengine(t, angle, *, radius, force, kx, ky, phase, psi):
 
 def reference(torque, times):
     """Angle and speed of the pinion alone."""
-    found = solve_ivp(
+    solution = solve_ivp(
         lambda t, y: [y[1], torque(t, y[0], y[1]) / I1],
         (0.0, times[-1]),
         [0.0, RATIO * W2],
@@ -67,7 +67,7 @@ def reference(torque, times):
         rtol=1e-12,
         atol=1e-12,
     )
-    return found.y
+    return solution.y
 
 
 def ramp(start, end, seconds):
@@ -154,7 +154,7 @@ def test_an_order_of_the_gear(flight):
     )
     run = solve(scene)
     inertia = scene.gears.gear_inertia
-    found = solve_ivp(
+    expected = solve_ivp(
         lambda t, y: [y[1], -amplitude * (1 + math.cos(5 * y[0] + 0.3)) / inertia],
         (0.0, run.time[-1]),
         [0.0, W2],
@@ -164,8 +164,8 @@ def test_an_order_of_the_gear(flight):
         atol=1e-12,
     )
     assert not (run.events.kind == EventKind.ONSET).any()
-    np.testing.assert_allclose(run.samples["gear_speed"], found.y[1], **CLOSE)
-    wanted = amplitude * (1 + np.cos(5 * found.y[0] + 0.3))
+    np.testing.assert_allclose(run.samples["gear_speed"], expected.y[1], **CLOSE)
+    wanted = amplitude * (1 + np.cos(5 * expected.y[0] + 0.3))
     np.testing.assert_allclose(run.samples["load_torque"], wanted, rtol=0, atol=1e-6 * amplitude)
 
 

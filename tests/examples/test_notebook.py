@@ -56,13 +56,13 @@ def test_a_kernel_shows_pictures_tables_and_progress(tmp_path):
         notebook, timeout=600, kernel_name="python3", resources={"metadata": {"path": str(tmp_path)}}
     )
     client.execute()
-    found = [cell["outputs"] for cell in notebook.cells if cell["cell_type"] == "code"]
-    kinds = [{kind for output in outputs for kind in output.get("data", {})} for outputs in found]
+    cells = [cell["outputs"] for cell in notebook.cells if cell["cell_type"] == "code"]
+    kinds = [{kind for output in outputs for kind in output.get("data", {})} for outputs in cells]
     assert "text/html" in kinds[0]
-    bar = found[1][0]["data"]
+    bar = cells[1][0]["data"]
     assert 'max="100" value="100"' in bar["text/html"]
     assert "100 of 100 ms" in bar["text/plain"]
     assert ["image/png" in kinds[k] for k in (2, 4)] == [True, True]
-    assert "4 of 4 runs" in found[3][0]["data"]["text/plain"]
-    assert "<table>" in found[3][-1]["data"]["text/html"]
-    assert "did you mean" in found[5][0]["text"]
+    assert "4 of 4 runs" in cells[3][0]["data"]["text/plain"]
+    assert "<table>" in cells[3][-1]["data"]["text/html"]
+    assert "did you mean" in cells[5][0]["text"]

@@ -120,7 +120,7 @@ def test_the_worst_place_to_start_from(geometry, coefficient, hub):
     """No place of a grid is worse, some of the preset's is nearly as bad, and hubs alone give their closed form."""
     r1, r2, pitch = geometry.base_radius_pinion, geometry.base_radius_gear, geometry.base_pitch
     hubs = (0.1 * r1, 0.05 * r2)
-    found = friction.starting_ratio(geometry, coefficient, hub, hubs)
+    ratio = friction.starting_ratio(geometry, coefficient, hub, hubs)
     ratios = []
     for newest in np.linspace(0.0, pitch, 301)[1:-1]:
         places = np.arange(newest, geometry.path_length, pitch)
@@ -129,8 +129,8 @@ def test_the_worst_place_to_start_from(geometry, coefficient, hub):
         f = coefficient * np.sign(places - geometry.approach) * share
         carried = math.hypot(1.0, f.sum())
         ratios.append((r1 + f @ pinion + hub * hubs[0] * carried) / (r2 + f @ gear - hub * hubs[1] * carried))
-    assert found >= max(ratios) * (1.0 - 1e-5)
+    assert ratio >= max(ratios) * (1.0 - 1e-5)
     if geometry is PAPER:  # others may have the worst place in a piece that the grid misses
-        assert found == pytest.approx(max(ratios), rel=1e-3)
+        assert ratio == pytest.approx(max(ratios), rel=1e-3)
     alone = friction.starting_ratio(geometry, 0.0, hub, hubs)
     assert alone == pytest.approx(friction.hub_starting_torque(geometry, 1.0, hub, hubs), rel=1e-12)

@@ -32,21 +32,23 @@ def grid():
 def test_bars_reach_over_the_speeds_and_marks_tell_the_verdict(sweep):
     ax = gd.plot.outcome(sweep)
     judged = gd.outcomes(sweep)
-    verdicts = [one.verdict for one in judged]
+    verdicts = [judgement.verdict for judgement in judged]
     assert {"turns smoothly", "sticks"} <= set(verdicts)
-    (bars,) = (each for each in ax.collections if isinstance(each, LineCollection))
-    for one, bar in zip(judged, bars.get_segments(), strict=True):
-        np.testing.assert_allclose(bar[:, 0], 100.0 * one.label["sam_fraction"])
-        np.testing.assert_allclose(bar[:, 1], [one.min_speed, one.max_speed])
+    (bars,) = (artist for artist in ax.collections if isinstance(artist, LineCollection))
+    for judgement, bar in zip(judged, bars.get_segments(), strict=True):
+        np.testing.assert_allclose(bar[:, 0], 100.0 * judgement.label["sam_fraction"])
+        np.testing.assert_allclose(bar[:, 1], [judgement.min_speed, judgement.max_speed])
     marks = {line.get_label(): line for line in ax.get_lines() if line.get_label() in verdicts}
     assert len({line.get_marker() for line in marks.values()}) == len(set(verdicts))
     for verdict, line in marks.items():
-        own = [100.0 * one.label["sam_fraction"] for one in judged if one.verdict == verdict]
-        np.testing.assert_allclose(line.get_xdata(), own)
+        percents = [
+            100.0 * judgement.label["sam_fraction"] for judgement in judged if judgement.verdict == verdict
+        ]
+        np.testing.assert_allclose(line.get_xdata(), percents)
     changes = [line.get_xdata()[0] for line in ax.get_lines() if line.get_linestyle() == ":"]
     expected = [
-        50.0 * (one + other)
-        for one, other, a, b in zip(FRACTIONS, FRACTIONS[1:], verdicts, verdicts[1:], strict=False)
+        50.0 * (fraction + other)
+        for fraction, other, a, b in zip(FRACTIONS, FRACTIONS[1:], verdicts, verdicts[1:], strict=False)
         if a != b
     ]
     assert sorted(changes) == pytest.approx(sorted(expected))
@@ -60,14 +62,17 @@ def test_fields_over_two_keys_need_no_samples(grid):
     assert [label.get_text() for label in ax.get_xticklabels()] == ["3", "4.5"]
     shown = {}
     names = [text.get_text() for text in ax.get_legend().get_texts()]
-    fields = [each for each in ax.collections if isinstance(each, PolyCollection)]
-    for name, one in zip(names, fields, strict=True):
-        for path in one.get_paths():
+    fields = [artist for artist in ax.collections if isinstance(artist, PolyCollection)]
+    for name, field in zip(names, fields, strict=True):
+        for path in field.get_paths():
             x, y = path.vertices[:4].mean(axis=0)
             shown[[34, 42, 100][round(y)], [3e-18, 4.5e-18][round(x)]] = name
-    assert len({each.get_hatch() for each in fields}) == len(fields)  # told apart without colours
-    for one in gd.outcomes(grid):
-        assert shown[round(100 * one.label["sam_fraction"]), one.label["torque"]] == one.verdict
+    assert len({artist.get_hatch() for artist in fields}) == len(fields)  # told apart without colours
+    for judgement in gd.outcomes(grid):
+        assert (
+            shown[round(100 * judgement.label["sam_fraction"]), judgement.label["torque"]]
+            == judgement.verdict
+        )
     ax.figure.canvas.draw()
 
 
@@ -93,8 +98,8 @@ def test_rollers_and_words(sweep):
 
 
 def test_pictures_show_the_runs_at_which_the_outcome_changes(sweep):
-    verdicts = [one.verdict for one in gd.outcomes(sweep)]
-    begins = next(number for number, one in enumerate(verdicts) if one == "sticks")
+    verdicts = [judgement.verdict for judgement in gd.outcomes(sweep)]
+    begins = next(number for number, judgement in enumerate(verdicts) if judgement == "sticks")
     shown = [text.get_text() for text in gd.plot.gear_speed(sweep).get_legend().get_texts()]
     assert len(shown) == 7
     for number in (0, begins - 1, begins, len(verdicts) - 1):

@@ -43,7 +43,10 @@ def solution_of(scene, *, reached=1.0):
 def sweep_of(scene, fractions, **options):
     scenes = [scene.replace({"coating.sam_fraction": fraction}) for fraction in fractions]
     return combine(
-        scene, {"coating.sam_fraction": fractions}, scenes, [solution_of(each, **options) for each in scenes]
+        scene,
+        {"coating.sam_fraction": fractions},
+        scenes,
+        [solution_of(member, **options) for member in scenes],
     )
 
 
@@ -77,7 +80,7 @@ def test_a_picture_of_many_runs_says_how_many_it_shows(sweep):
 def test_legends_of_long_names_stay_on_the_picture(length):
     names = [f"{number} {'longest ' * length}"[:length] for number in range(10, 17)]
     scenes = [LOW.replace({"name": name}) for name in names]
-    ds = combine(LOW, {"name": names}, scenes, [solution_of(each) for each in scenes])
+    ds = combine(LOW, {"name": names}, scenes, [solution_of(member) for member in scenes])
     for draw in (gd.plot.gear_speed, gd.plot.power_spectrum, gd.plot.overview):
         figure = draw(ds)
         figure = figure if isinstance(figure, Figure) else figure.get_figure(root=True)
@@ -101,17 +104,17 @@ def test_lines_are_the_samples_in_the_unit_of_the_axis(single):
 @pytest.mark.parametrize("draw", GEAR_PICTURES)
 def test_every_picture_of_gears_draws_into_given_axes(draw, single, sweep):
     for ds in (single, sweep):
-        given = Figure().add_subplot()
-        assert draw(ds, given) is given
+        ax = Figure().add_subplot()
+        assert draw(ds, ax) is ax
         assert isinstance(draw(ds), Axes)
 
 
 @pytest.mark.parametrize("draw", ROLLER_PICTURES)
 def test_every_picture_of_a_roller_draws_into_given_axes(draw, roller):
-    given = Figure().add_subplot()
-    assert draw(roller, given) is given
-    assert legend_of(given) == ["SAM 100 %", "SAM 0 %"]
-    first, second = given.get_lines()[:2]
+    ax = Figure().add_subplot()
+    assert draw(roller, ax) is ax
+    assert legend_of(ax) == ["SAM 100 %", "SAM 0 %"]
+    first, second = ax.get_lines()[:2]
     assert first.get_linestyle() != second.get_linestyle()  # told apart without colours
 
 
@@ -171,9 +174,9 @@ def test_the_torque_axis_shows_a_run_up(single):
 
 def test_a_picture_says_that_a_run_is_not_at_its_end(single):
     for status, said in (("finished", ""), ("interrupted", "; interrupted at 100 ms of 300 ms")):
-        one = single.assign(reached=0.1).assign_attrs(status=status, t_end=0.3)
+        run = single.assign(reached=0.1).assign_attrs(status=status, t_end=0.3)
         for draw in GEAR_PICTURES:
-            assert draw(one).get_xlabel() == f"time (ms){said}"
+            assert draw(run).get_xlabel() == f"time (ms){said}"
     ds = sweep_of(LOW, [1.0, 0.5])
     ds["status"][1] = "too_many_steps"
     assert gd.plot.gear_speed(ds).get_xlabel() == "time (ms); 1 of 2 runs are not at their end"
@@ -219,7 +222,7 @@ def test_overview_as_a_file(name, ending, request, tmp_path):
     figure = gd.plot.overview(request.getfixturevalue(name))
     path = gd.plot.write(figure, tmp_path / f"picture.{ending}")
     assert path.stat().st_size > 5000
-    assert [each.name for each in tmp_path.iterdir()] == [f"picture.{ending}"]
+    assert [entry.name for entry in tmp_path.iterdir()] == [f"picture.{ending}"]
 
 
 def test_nothing_overlaps_in_the_overview(sweep):
@@ -317,8 +320,8 @@ def test_thinning_does_not_depend_on_how_the_file_is_read(monkeypatch):
     whole = thin(time, values, 8_001)
     monkeypatch.setattr(style, "PIECE", 1_000)
     monkeypatch.setattr(pieces_module, "PIECE", 1_000)
-    for one, other in zip(thin(time, values, 8_001), whole, strict=True):
-        np.testing.assert_array_equal(one, other)
+    for piecewise, other in zip(thin(time, values, 8_001), whole, strict=True):
+        np.testing.assert_array_equal(piecewise, other)
 
 
 def test_thinning_leaves_short_traces_alone():

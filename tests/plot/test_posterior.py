@@ -26,35 +26,37 @@ SEEN = [Observation(of=torque, value=4.4, uncertainty=0.3)]
 
 def area(ax):
     """Area below the curve of a panel."""
-    (stairs,) = [one for one in ax.patches if hasattr(one, "get_data") and hasattr(one.get_data(), "edges")]
+    (stairs,) = [
+        patch for patch in ax.patches if hasattr(patch, "get_data") and hasattr(patch.get_data(), "edges")
+    ]
     data = stairs.get_data()
     return float(np.sum(data.values * np.diff(data.edges))), data
 
 
 def test_one_key_of_a_grid_is_its_density_in_the_unit_of_the_axis():
-    found = gd.studies.calibrate(LOW, {"drive.torque": stats.norm(5e-18, 5e-19)}, SEEN, points=31)
-    figure = gd.plot.posterior(found)
+    posterior = gd.studies.calibrate(LOW, {"drive.torque": stats.norm(5e-18, 5e-19)}, SEEN, points=31)
+    figure = gd.plot.posterior(posterior)
     (ax,) = figure.axes
     share, data = area(ax)
     assert share == pytest.approx(1.0, rel=1e-9)
     assert ax.get_xlabel() == "torque (aN m)"
     middle = 0.5 * (data.edges[1:] + data.edges[:-1])
-    np.testing.assert_allclose(middle, 1e18 * found.torque, rtol=1e-9)
+    np.testing.assert_allclose(middle, 1e18 * posterior.torque, rtol=1e-9)
     (line,) = ax.lines
-    assert line.get_xdata()[0] == pytest.approx(1e18 * float(found["mean"][0]), rel=1e-9)
+    assert line.get_xdata()[0] == pytest.approx(1e18 * float(posterior["mean"][0]), rel=1e-9)
 
 
 def test_two_keys_of_a_grid_have_their_margins_and_both():
     priors = {"drive.torque": stats.norm(5e-18, 5e-19), "initial.gear_speed": stats.uniform(1.0, 1.0)}
-    found = gd.studies.calibrate(LOW, priors, SEEN, points=11)
-    figure = gd.plot.posterior(found)
+    posterior = gd.studies.calibrate(LOW, priors, SEEN, points=11)
+    figure = gd.plot.posterior(posterior)
     assert isinstance(figure, Figure)
     first, both, second = figure.axes
     assert area(first)[0] == pytest.approx(1.0, rel=1e-9)
     assert area(second)[0] == pytest.approx(1.0, rel=1e-9)
     (mesh,) = both.collections
     assert mesh.get_array().sum() == pytest.approx(1.0, rel=1e-9)
-    np.testing.assert_allclose(mesh.get_array(), found.weight.T, rtol=1e-12)
+    np.testing.assert_allclose(mesh.get_array(), posterior.weight.T, rtol=1e-12)
     assert (both.get_xlabel(), both.get_ylabel()) == ("torque (aN m)", "initial gear speed (rad/s)")
 
 

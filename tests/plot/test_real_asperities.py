@@ -36,26 +36,26 @@ def test_joined_asperities_bear_the_recorded_force(run):
     states = mesh_states(run, times)
     scale = np.abs(run.mesh_force.values).max()
     scene = run_scene(run)
-    surfaces = {one.name: one.surface for one in scene.materials()}
+    surfaces = {material.name: material.surface for material in scene.materials()}
     for state in states:
         total = 0.0
-        for one in state.contacts:
-            joined = met_flank(scene, one.pair, one.flank).some(list(one.asperities))
+        for contact in state.contacts:
+            joined = met_flank(scene, contact.pair, contact.flank).some(list(contact.asperities))
             loads = []
-            overlaps = joined.overlaps(scene, one.place, one.gap)
+            overlaps = joined.overlaps(scene, contact.place, contact.gap)
             for material, radius, overlap in zip(joined.material, joined.radius, overlaps, strict=True):
                 law, length, load = tip_law(
                     scene.contact.asperity, surfaces[MATERIAL_NAMES[material]], radius
                 )
                 loads.append(load * float(law.load(max(overlap / length, -law.detach))))
             # the tables' own error
-            assert one.force == pytest.approx(sum(loads), rel=1e-8, abs=1e-8 * scale)
-            total += one.force * (1 - 2 * one.flank)
+            assert contact.force == pytest.approx(sum(loads), rel=1e-8, abs=1e-8 * scale)
+            total += contact.force * (1 - 2 * contact.flank)
         assert total == pytest.approx(state.mesh_force, rel=1e-12, abs=1e-14 * scale)
-    counted = [sum(len(one.asperities) for one in state.contacts) for state in states]
+    counted = [sum(len(contact.asperities) for contact in state.contacts) for state in states]
     assert counted == run.asperities_in_contact.values[::40].tolist()
     assert counted[0] > 0
-    seen = {one.state for state in states for one in state.contacts}
+    seen = {contact.state for state in states for contact in state.contacts}
     assert seen == {ContactState.OPEN, ContactState.LOADING, ContactState.PARTLY_STRETCHED}
 
 
@@ -64,7 +64,7 @@ def test_without_events_the_teeth_are_the_same():
     ds = gd.simulate(SCENE.replace({**changes, "run.asperity_events": False}))
     states = mesh_states(ds, ds.time.values)
     assert states == mesh_states(gd.simulate(SCENE.replace(changes)), ds.time.values)
-    assert sum(len(one.asperities) for one in states[0].contacts) > 0
+    assert sum(len(contact.asperities) for contact in states[0].contacts) > 0
     with pytest.raises(gd.SceneError, match=r"run.asperity_events = false: must be true"):
         gd.plot.asperity_events(ds)
 
@@ -76,7 +76,7 @@ def test_the_teeth_have_a_mark_for_each_joined_asperity(run):
         line.get_xdata().size for ax in figure.axes for line in ax.get_lines() if line.get_marker() == "v"
     ]
     (state,) = mesh_states(run, [at])
-    joined = sum(len(one.asperities) for one in state.contacts)
+    joined = sum(len(contact.asperities) for contact in state.contacts)
     assert sum(marks) == joined > 3
     assert any("joined asperities:" in ax.get_title(loc="left") for ax in figure.axes)
 
@@ -87,9 +87,9 @@ def test_every_joining_and_detachment_of_a_mesh_cycle_is_marked(run):
     start, end = entries[-2:]
     assert np.ptp(ax.get_lines()[0].get_xdata()) == pytest.approx((end - start) * 1e6, rel=1e-2)
     for kind, mark in ((EventKind.ASPERITY_ONSET, "^"), (EventKind.ASPERITY_DETACHMENT, "v")):
-        (line,) = (one for one in ax.get_lines() if one.get_marker() == mark)
-        found = run.event_time[run.event_kind == kind].values
-        wanted = found[(found >= start) & (found <= end)]
+        (line,) = (artist for artist in ax.get_lines() if artist.get_marker() == mark)
+        times = run.event_time[run.event_kind == kind].values
+        wanted = times[(times >= start) & (times <= end)]
         np.testing.assert_allclose(line.get_xdata(), wanted * 1e6, rtol=1e-12)
         force = np.interp(wanted, run.time.values, run.mesh_force.values)
         np.testing.assert_allclose(line.get_ydata(), force * 1e6, rtol=1e-12)

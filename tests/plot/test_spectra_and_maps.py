@@ -34,9 +34,9 @@ def drawn(figure):
 @pytest.mark.parametrize("name", PICTURES)
 def test_pictures_of_runs_draw_single_ones_and_sweeps(name, low):
     draw = getattr(gd.plot, name)
-    given = Figure().add_subplot()
-    assert draw(low, given) is given
-    assert len(given.get_legend().get_texts()) == 2
+    ax = Figure().add_subplot()
+    assert draw(low, ax) is ax
+    assert len(ax.get_legend().get_texts()) == 2
     drawn(draw(low.sel(sam_fraction=0.7)).figure)
 
 
@@ -84,14 +84,14 @@ def test_bands_keep_the_power():
     np.testing.assert_array_equal(means[plain], density[: plain.sum()])
     assert np.all(np.diff(at) > 0.0)
     edges = np.searchsorted(frequency, crowded_from(1.0) * 2.0 ** (np.arange(40) / 24))
-    for one, other, mean in zip(edges[:-1], edges[1:], means[plain.sum() :], strict=False):
-        assert mean == pytest.approx(density[one:other].mean(), rel=1e-12, abs=0)
+    for low, high, mean in zip(edges[:-1], edges[1:], means[plain.sum() :], strict=False):
+        assert mean == pytest.approx(density[low:high].mean(), rel=1e-12, abs=0)
 
 
 def test_padding_adds_points_and_nothing_else(low):
     """Every fourth value of a spectrum padded to four times the length is that of the plain one."""
     run = low.sel(sam_fraction=0.7)
-    plain, padded = (gd.analysis.power_spectrum(run, segment=0.05, padding=each) for each in (1, 4))
+    plain, padded = (gd.analysis.power_spectrum(run, segment=0.05, padding=padding) for padding in (1, 4))
     np.testing.assert_allclose(padded[::4], plain, rtol=1e-9, atol=1e-12 * float(plain.max()))
     assert padded.attrs["resolution"] == plain.attrs["resolution"]
     with pytest.raises(gd.SceneError, match="padding"):
@@ -113,8 +113,8 @@ def test_spectrogram_shows_one_run_up_to_where_it_rings(low):
 
 
 def test_map_shows_the_first_impacts_the_later_ones_and_an_assessment(chart, low):
-    found = gd.analysis.assess(low.sel(sam_fraction=0.7), chart)
-    ax = gd.plot.coating_map(chart, assessment=found)
+    assessment = gd.analysis.assess(low.sel(sam_fraction=0.7), chart)
+    ax = gd.plot.coating_map(chart, assessment=assessment)
     names = [text.get_text() for text in ax.get_legend().get_texts()]
     assert names == ["first impact", "later impacts", "assessed"]
     first = next(line for line in ax.get_lines() if line.get_label() == "first impact")

@@ -134,7 +134,10 @@ def test_teeth_do_not_overlap_unless_the_gap_is_negative(picture):
 
 def test_drawn_gap_is_the_recorded_one(run):
     for state in tooth_contacts(run, [0.0, 0.02, 0.0773]):
-        smallest = min((one for one in state.contacts if one.flank == Flank.DRIVE), key=lambda one: one.gap)
+        smallest = min(
+            (contact for contact in state.contacts if contact.flank == Flank.DRIVE),
+            key=lambda contact: contact.gap,
+        )
         at = int(np.argmin(np.abs(run.time.values - state.time)))
         ends = contact_points(PICTURE, Flank.DRIVE, smallest.place, smallest.gap)
         assert math.dist(*ends) == pytest.approx(run.drive_gap.values[at], rel=1e-9, abs=0.0)
@@ -146,8 +149,8 @@ def test_drawn_gap_is_the_recorded_one(run):
 
 def test_positive_torque_presses_the_drive_flank(run):
     (state,) = tooth_contacts(run, 0.06)
-    touching = [one for one in state.contacts if one.force != 0.0]
-    assert {one.flank for one in touching} == {Flank.DRIVE}
+    touching = [contact for contact in state.contacts if contact.force != 0.0]
+    assert {contact.flank for contact in touching} == {Flank.DRIVE}
     view = TeethView(run, [state])
     view.draw(state)
     arrows = [text for text in view.figure.axes[0].texts if getattr(text, "arrow_patch", None) is not None]
@@ -158,7 +161,7 @@ def test_positive_torque_presses_the_drive_flank(run):
         assert along[1] == pytest.approx(-math.tan(GEOMETRY.pressure_angle) * along[0], rel=1e-9, abs=0.0)
         ways.append(math.copysign(1.0, along[0]))
     # what pushes drives the gear on, to the right
-    assert sorted(ways) == sorted(math.copysign(1.0, one.force) for one in touching)
+    assert sorted(ways) == sorted(math.copysign(1.0, contact.force) for contact in touching)
 
 
 def test_picture_says_what_the_record_says(run):
@@ -170,13 +173,15 @@ def test_picture_says_what_the_record_says(run):
         loc="left"
     )
     shown = [ax for ax in close if ax.get_visible()]
-    pairs = {one.pair: one for one in state.contacts if one.flank == Flank.DRIVE}
+    pairs = {contact.pair: contact for contact in state.contacts if contact.flank == Flank.DRIVE}
     assert len(shown) == 2
     for ax in shown:
         title = ax.get_title(loc="left")
-        one = pairs[int(title.split()[1].rstrip(","))]
-        assert f"gap {one.gap * 1e9:.4g} nm" in title
-        assert f", {'pushes' if one.force > 0 else 'pulls'} with {abs(one.force) * 1e12:.4g} pN" in title
+        contact = pairs[int(title.split()[1].rstrip(","))]
+        assert f"gap {contact.gap * 1e9:.4g} nm" in title
+        assert (
+            f", {'pushes' if contact.force > 0 else 'pulls'} with {abs(contact.force) * 1e12:.4g} pN" in title
+        )
         factor = float(ax.get_xlabel().split("\N{MULTIPLICATION SIGN}")[1])
         box, (left, right), (low, high) = ax.get_window_extent(), ax.get_xlim(), ax.get_ylim()
         # micrometres along, nanometres across; printed with two digits
@@ -195,8 +200,8 @@ def test_words_have_places_of_their_own(changes):
     assert len(close) == (3 if changes else 2)
     captions = [ax._left_title.get_window_extent() for ax in close if ax.get_visible()]
     assert len(captions) >= 2
-    for one, following in itertools.pairwise(sorted(captions, key=lambda box: box.x0)):
-        assert one.x1 < following.x0
+    for caption, following in itertools.pairwise(sorted(captions, key=lambda box: box.x0)):
+        assert caption.x1 < following.x0
     assert max(box.x1 for box in captions) < figure.bbox.x1
     assert max(box.y1 for box in captions) < figure.legends[0].get_window_extent().y0
     assert (
@@ -238,13 +243,15 @@ def test_asperities_are_a_sample_of_the_model():
 def test_number_of_joined_asperities(run):
     """Against heights drawn at random on the footprint of a contact, one that is pressed well."""
     (state,) = tooth_contacts(run, 0.0)
-    one = state.contacts[0]
-    joined = dict.fromkeys(one.joined, 6e-9)
-    pressed = type(one)(one.pair, one.flank, one.place, one.radius, 6e-9, 1.0, joined, one.states)
+    contact = state.contacts[0]
+    joined = dict.fromkeys(contact.joined, 6e-9)
+    pressed = type(contact)(
+        contact.pair, contact.flank, contact.place, contact.radius, 6e-9, 1.0, joined, contact.states
+    )
     random = np.random.default_rng(1)
-    half = 6 * math.sqrt(2 * one.radius * 6e-9)
+    half = 6 * math.sqrt(2 * contact.radius * 6e-9)
     x, z = random.uniform(-half, half, 400_000), 6e-9 * random.standard_normal(400_000)
-    share = np.mean(z > 6e-9 + x**2 / (2 * one.radius))
+    share = np.mean(z > 6e-9 + x**2 / (2 * contact.radius))
     expected = share * 2 * half * 2e-6 * 1.69e14
     # the sampling error is 1/sqrt(share * number), about a percent
     assert joined_asperities(SCENE, pressed) == pytest.approx(expected, rel=0.04)
@@ -255,7 +262,7 @@ def test_moving_picture(run, tmp_path):
     with Image.open(path) as image:
         assert image.n_frames == 3
         assert image.width == 304
-    assert [each.name for each in tmp_path.iterdir()] == ["teeth.gif"]
+    assert [entry.name for entry in tmp_path.iterdir()] == ["teeth.gif"]
     with pytest.raises(gd.SceneError, match="exists already"):
         gd.plot.animate_teeth(run, path, frames=2)
 
@@ -303,4 +310,4 @@ def test_command(archive, tmp_path, monkeypatch, capfd):
     for command, words in refused:
         assert main(command) == 2
         assert words in capfd.readouterr().err
-    assert sorted(each.name for each in tmp_path.iterdir()) == ["one.png", "two.png", "two.webp"]
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["one.png", "two.png", "two.webp"]

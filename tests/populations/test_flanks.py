@@ -17,14 +17,14 @@ ROLLER = preset("roller_slow").replace({"contact.roughness": "discrete"})
 
 def test_the_preset_s_surface_is_the_one_that_a_prototype_drew():
     told, flanks = NUMBERS["drawing_seed_0"], flanks_of(GEARS)
-    counts = [one.arc.size for one in flanks]
+    counts = [flank.arc.size for flank in flanks]
     assert counts[:6] == told["counts"]
     assert sum(counts) == told["total"]
     first = flanks[0]
     np.testing.assert_allclose(first.arc[:3], np.array(told["first_arc_um"]) * 1e-6, rtol=1e-14)
     np.testing.assert_allclose(first.height[:3], np.array(told["first_height_nm"]) * 1e-9, rtol=1e-14)
     np.testing.assert_allclose(first.q[:3], told["first_q"], rtol=1e-14)
-    highest = [one.height.max() * 1e9 for one in flanks[:6]]
+    highest = [flank.height.max() * 1e9 for flank in flanks[:6]]
     np.testing.assert_allclose(highest, told["highest_nm"], rtol=1e-14)
 
 
@@ -47,7 +47,9 @@ def test_a_rougher_surface_has_a_longer_strip():
 
 
 def test_radii_are_lognormal_about_their_mean():
-    radii = np.concatenate([one.radius for one in flanks_of(GEARS.replace({"contact.radius_spread": 0.3}))])
+    radii = np.concatenate(
+        [flank.radius for flank in flanks_of(GEARS.replace({"contact.radius_spread": 0.3}))]
+    )
     mean, error = 450e-9, 0.3 / np.sqrt(radii.size)  # standard error over the mean
     assert abs(radii.mean() / mean - 1.0) < 4.0 * error
     assert abs(radii.std() / (0.3 * mean) - 1.0) < 0.02  # a heavy tail: 4 standard errors by the kurtosis
@@ -73,13 +75,13 @@ def test_independent_sides_draw_a_second_number_and_leave_the_rest():
 def test_a_table_is_read_at_the_place_of_each_asperity():
     table = [[0.0, 1.0, 0.25]]
     scene = GEARS.replace({"coating.pinion_table": table})
-    one = flanks_of(scene)[0]
+    flank = flanks_of(scene)[0]
     g = scene.geometry
-    place = np.sqrt(2.0 * g.base_radius_pinion * np.maximum(one.arc, 0.0)) - g.tangent_pinion + g.approach
+    place = np.sqrt(2.0 * g.base_radius_pinion * np.maximum(flank.arc, 0.0)) - g.tangent_pinion + g.approach
     place = np.clip(place / g.path_length, 0.0, 1.0)
-    np.testing.assert_allclose(along_path(scene, one), place, rtol=1e-12)
-    coated = gd.population(scene).coated.values[: one.arc.size]
-    assert np.array_equal(coated, one.q < fraction_at(table, 0, place))
+    np.testing.assert_allclose(along_path(scene, flank), place, rtol=1e-12)
+    coated = gd.population(scene).coated.values[: flank.arc.size]
+    assert np.array_equal(coated, flank.q < fraction_at(table, 0, place))
 
 
 def test_a_list_stands_on_the_flanks_that_it_names():
@@ -87,7 +89,7 @@ def test_a_list_stands_on_the_flanks_that_it_names():
     scene = GEARS.replace(
         {"contact.asperities": {**listed, "flank": [None, None, "coast"], "radius": [None, 1e-7, None]}}
     )
-    flanks = {(one.tooth, one.flank): one for one in flanks_of(scene)}
+    flanks = {(flank.tooth, flank.flank): flank for flank in flanks_of(scene)}
     assert flanks[0, 0].arc.tolist() == [2e-6]
     assert flanks[4, 0].arc.tolist() == [1e-6, 2e-6]
     assert flanks[4, 1].height.tolist() == [2e-8, 1e-8, 3e-8]
@@ -98,9 +100,9 @@ def test_a_list_stands_on_the_flanks_that_it_names():
 
 
 def test_a_roller_has_one_flank_about_its_middle():
-    (one,) = flanks_of(ROLLER)
-    assert -1e-6 <= one.arc[0] < -0.9e-6 < 0.9e-6 < one.arc[-1] <= 1e-6
-    assert abs(one.arc.size - 1.69e14 * 2e-6 * 2e-6) < 4.0 * np.sqrt(676.0)
+    (flank,) = flanks_of(ROLLER)
+    assert -1e-6 <= flank.arc[0] < -0.9e-6 < 0.9e-6 < flank.arc[-1] <= 1e-6
+    assert abs(flank.arc.size - 1.69e14 * 2e-6 * 2e-6) < 4.0 * np.sqrt(676.0)
     assert "x" in gd.population(ROLLER)
 
 

@@ -43,7 +43,7 @@ def passages(scene):
         if pace > 0
         else (EventKind.MESH_EXIT, EventKind.MESH_ENTRY)
     )
-    found = []
+    events = []
     for pair in range(-200, 201):
         for phase, kind, flank in (
             (pair, entry, 0),
@@ -53,8 +53,8 @@ def passages(scene):
         ):
             time = (phase - start.mesh_phase) / pace
             if 0.0 < time < scene.run.duration:
-                found.append((time, int(kind), pair, flank))
-    return sorted(found)
+                events.append((time, int(kind), pair, flank))
+    return sorted(events)
 
 
 @pytest.mark.parametrize("backend", ["native", "sksundae"])

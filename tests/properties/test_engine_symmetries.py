@@ -97,13 +97,13 @@ def test_units_do_not_matter(length, mass, time):
         {"mesh.damping": 1e-7, "mesh.static_error": [{"order": 19, "amplitude": 1e-8}], "run.samples": 41}
     )
     unit = 2.0**length, 2.0**mass, 2.0**time
-    one, other = solve(scene), solve(rescaled(scene, *unit))
-    assert np.isin(one.events.kind, EventKind.TURNING_POINT).sum() >= 2
+    original, scaled = solve(scene), solve(rescaled(scene, *unit))
+    assert np.isin(original.events.kind, EventKind.TURNING_POINT).sum() >= 2
     # rounding of the scales now and then takes or refuses a step: what the tolerance of 1e-8 per step leaves
-    speed, u = one.samples["gear_speed"], one.samples["transmission_error"]
-    np.testing.assert_allclose(other.samples["gear_speed"] * unit[2], speed, atol=3e-6 * np.ptp(speed))
-    np.testing.assert_allclose(other.samples["transmission_error"] / unit[0], u, atol=3e-6 * np.ptp(u))
-    np.testing.assert_array_equal(other.events.kind, one.events.kind)
+    speed, u = original.samples["gear_speed"], original.samples["transmission_error"]
+    np.testing.assert_allclose(scaled.samples["gear_speed"] * unit[2], speed, atol=3e-6 * np.ptp(speed))
+    np.testing.assert_allclose(scaled.samples["transmission_error"] / unit[0], u, atol=3e-6 * np.ptp(u))
+    np.testing.assert_array_equal(scaled.events.kind, original.events.kind)
 
 
 @pytest.mark.parametrize("phase", [0.1, 0.45, 0.93])

@@ -55,9 +55,9 @@ def test_a_bouncing_tooth_keeps_the_times_of_its_bounces_until_one_holds_it(ener
         ("full", EventKind.FULL_STRETCH),
         ("separation", EventKind.SEPARATION),
     ):
-        found = times(run, kind)[: len(expected[name])]
+        bounces = times(run, kind)[: len(expected[name])]
         # 1e-10 per step, and each bounce adds up the errors of all before it
-        np.testing.assert_allclose(found, expected[name], rtol=0, atol=2e-8 * end)
+        np.testing.assert_allclose(bounces, expected[name], rtol=0, atol=2e-8 * end)
     turned = times(run, EventKind.TURNING_POINT)
     # the tooth that is held goes on trembling: it turns round in either direction
     nearest = turned[np.abs(turned[:, None] - expected["turning"]).argmin(axis=0)]

@@ -150,10 +150,10 @@ def test_the_turning_point_of_a_cubic_is_exact(gap, span, before, after, bend):
     def moved(s):
         return bend * s**3 / 3 + (after - before - bend) * s**2 / 2 + before * s
 
-    found = extreme_gap(span, gap, before / span, gap + moved(1.0), after / span)
-    assert found == pytest.approx(gap + moved(place), rel=0, abs=1e-12 * 20)
+    extreme = extreme_gap(span, gap, before / span, gap + moved(1.0), after / span)
+    assert extreme == pytest.approx(gap + moved(place), rel=0, abs=1e-12 * 20)
     assert extreme_gap(span, -gap, -before / span, -gap - moved(1.0), -after / span) == pytest.approx(
-        -found, rel=0, abs=1e-12 * 20
+        -extreme, rel=0, abs=1e-12 * 20
     )
 
 
@@ -166,9 +166,9 @@ def test_force_scales_with_radius_width_and_density(gap, share, radius, width, d
     surface = PlainSurface()
     g, s = gap * surface.roughness, share * 1.3e-9
     denser = PlainSurface(asperity_density=density * surface.asperity_density)
-    one = line_force(g, s, 1e-5, 2e-6, surface)
+    force = line_force(g, s, 1e-5, 2e-6, surface)
     other = line_force(g, s, radius * 1e-5, width * 2e-6, denser)
-    assert other == pytest.approx(one * math.sqrt(radius) * width * density, rel=1e-12, abs=0.0)
+    assert other == pytest.approx(force * math.sqrt(radius) * width * density, rel=1e-12, abs=0.0)
 
 
 @settings(max_examples=30)
@@ -183,9 +183,9 @@ def test_force_scales_as_its_dimensions_say(gap, share, length, stiffness):
         roughness=length * surface.roughness,
     )
     g, s = gap * surface.roughness, share * 1.3e-9
-    one = line_force(g, s, 1e-5, 2e-6, surface)
+    force = line_force(g, s, 1e-5, 2e-6, surface)
     scaled = line_force(length * g, length * s, length * 1e-5, length * 2e-6, other)
     size = abs(line_force(g, 0.0, 1e-5, 2e-6, surface, "hertz")) + abs(
-        one
+        force
     )  # the two cancel where the force is zero
-    assert abs(scaled / (stiffness * length**2) - one) < 1e-10 * size
+    assert abs(scaled / (stiffness * length**2) - force) < 1e-10 * size

@@ -76,8 +76,8 @@ def test_the_coast_flank_is_the_drive_flank_in_a_mirror(u, v, phase, w, pair):
 
 @given(u=us, v=rates, phase=phases, w=rates)
 def test_the_mirrored_mesh_pushes_the_other_way(u, v, phase, w):
-    one, other = forces(u, v, phase, w), forces(-u, -v, COAST - phase, -w)
-    np.testing.assert_allclose(other, -one, rtol=1e-9, atol=1e-9 * np.abs(one).max())
+    force, mirrored = forces(u, v, phase, w), forces(-u, -v, COAST - phase, -w)
+    np.testing.assert_allclose(mirrored, -force, rtol=1e-9, atol=1e-9 * np.abs(force).max())
 
 
 @given(flank=flanks, u=us, phase=phases, v=rates, w=rates, pair=st.integers(-1, 1))

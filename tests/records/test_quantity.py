@@ -38,11 +38,11 @@ RATIOS = (OLD.force_unit / NEW.force_unit, OLD.time_unit / NEW.time_unit)
 
 def leaves(fields, record):
     """All fields of a record and of the records in it, each with its values."""
-    for each in fields:
-        if isinstance(each.kind, tuple):
-            yield from leaves(each.kind, record[each.name])
+    for field in fields:
+        if isinstance(field.kind, tuple):
+            yield from leaves(field.kind, record[field.name])
         else:
-            yield each, np.array(record[each.name])
+            yield field, np.array(record[field.name])
 
 
 @pytest.mark.parametrize(
@@ -70,27 +70,27 @@ def test_a_state_in_other_units_is_the_same_in_si():
     new = old.copy()
     convert(STATE_FIELDS, new[0], *RATIOS)
     scaled = 0
-    for (each, before), (_, after) in zip(
+    for (field, before), (_, after) in zip(
         leaves(STATE_FIELDS, old[0]), leaves(STATE_FIELDS, new[0]), strict=True
     ):
-        if each.kind == INT or not (each.unit.force or each.unit.time):
+        if field.kind == INT or not (field.unit.force or field.unit.time):
             np.testing.assert_array_equal(before, after)
             continue
         scaled += 1
-        np.testing.assert_allclose(after * each.unit.in_si(NEW), before * each.unit.in_si(OLD), rtol=1e-14)
+        np.testing.assert_allclose(after * field.unit.in_si(NEW), before * field.unit.in_si(OLD), rtol=1e-14)
     assert scaled > 30
 
 
 def test_whole_numbers_have_no_units_and_bounds():
-    for each, _ in leaves(STATE_FIELDS, np.zeros(1, STATE)[0]):
-        if each.kind == INT:
-            assert each.unit.scaled == "1"
-            assert callable(each.high) or each.low < each.high
-        assert each.meaning
+    for field, _ in leaves(STATE_FIELDS, np.zeros(1, STATE)[0]):
+        if field.kind == INT:
+            assert field.unit.scaled == "1"
+            assert callable(field.high) or field.low < field.high
+        assert field.meaning
 
 
 def test_names_in_an_archive_are_of_one_quantity_each():
-    names = [name for each in (*ENERGY_SUMS, *ENERGY_NOW, *GEAR_EXTREMES) for name in each.archive]
+    names = [name for quantity in (*ENERGY_SUMS, *ENERGY_NOW, *GEAR_EXTREMES) for name in quantity.archive]
     assert len(names) == len(set(names))
     assert set(names) <= {*ENERGY_TOTALS, *EXTREMES} <= set(by_name())
     assert all(LOSSES[name].sign == -1 and name in TERMS for name in LOSSES)
@@ -114,13 +114,13 @@ def test_the_residual_is_works_less_losses_and_changes():
 
 
 def test_totals_are_numbers_by_name():
-    found = Extremes(stick_time=3.0)
-    assert found.stick_time == found["stick_time"] == 3.0
-    assert (found.reversals, math.isnan(found.max_gear_speed), len(found.exposures)) == (0, True, 0)
+    extremes = Extremes(stick_time=3.0)
+    assert extremes.stick_time == extremes["stick_time"] == 3.0
+    assert (extremes.reversals, math.isnan(extremes.max_gear_speed), len(extremes.exposures)) == (0, True, 0)
     with pytest.raises(AttributeError, match="Extremes has no speed"):
-        _ = found.speed
-    again = pickle.loads(pickle.dumps(found))
+        _ = extremes.speed
+    again = pickle.loads(pickle.dumps(extremes))
     assert type(again) is Extremes
     assert json.dumps(dict(again, exposures=0, standstill_list=0)) == json.dumps(
-        dict(found, exposures=0, standstill_list=0)
+        dict(extremes, exposures=0, standstill_list=0)
     )

@@ -42,21 +42,21 @@ def least_constraint(inertia, force, rows, drift, limits):
     """
     inertia, free = np.asarray(inertia, float), np.asarray(force, float) / inertia
     rows, drift = np.asarray(rows, float).reshape(-1, 2), np.asarray(drift, float)
-    n, found = len(rows), []
+    n, candidates = len(rows), []
     for stuck in itertools.chain([()], ((k,) for k in range(n)), itertools.combinations(range(n), 2)):
         others = [k for k in range(n) if k not in stuck]
         held = rows[list(stuck)]
         if len(stuck) == 2:
             if abs(np.linalg.det(held)) > 1e-12 * np.prod(np.linalg.norm(held, axis=1)):
-                found.append((np.linalg.solve(held, -drift[list(stuck)]), stuck))
+                candidates.append((np.linalg.solve(held, -drift[list(stuck)]), stuck))
             continue
         for signs in itertools.product((-1.0, 1.0), repeat=len(others)):
             a = free - (np.array(signs) * limits[others]) @ rows[others] / inertia
             if stuck:
                 row, k = held[0], stuck[0]
                 a = a - (row @ a + drift[k]) / (row**2 @ (1.0 / inertia)) * row / inertia
-            found.append((a, stuck))
-    return min(found, key=lambda one: constraint(inertia, free, rows, drift, limits, one[0]))
+            candidates.append((a, stuck))
+    return min(candidates, key=lambda candidate: constraint(inertia, free, rows, drift, limits, candidate[0]))
 
 
 def constraint(inertia, free, rows, drift, limits, a):
@@ -132,7 +132,7 @@ class RubbingGears:
 
     def touches(self, u, angle):
         """All pairs that touch at a state."""
-        found = []
+        touches = []
         for side, i, xi in self.places(angle):
             inside = min(max(xi, 0.0), self.g.path_length)
             outside = xi - inside
@@ -145,8 +145,8 @@ class RubbingGears:
                 continue
             slope = load * outside / relief + along
             drift = side * self.r2 if outside == 0.0 else 0.0
-            found.append(Touch((side, i), load, slope, limit, np.array([a1, -a2]), drift))
-        return found
+            touches.append(Touch((side, i), load, slope, limit, np.array([a1, -a2]), drift))
+        return touches
 
     def speeds(self, y):
         return np.array([(y[1] + self.r2 * y[3]) / self.r1, y[3]])
@@ -255,7 +255,7 @@ class RubbingGears:
             f[stuck] = np.linalg.lstsq(rows[stuck].T, left, rcond=None)[0] if stuck.size else 0.0
             friction = dict(zip(keys, f, strict=True))
         way = np.where(np.isin(np.arange(len(keys)), here), rows @ a + drift, v)
-        self.signs = {k: math.copysign(1.0, each) for k, each in zip(keys, way, strict=True)}
+        self.signs = {k: math.copysign(1.0, slip) for k, slip in zip(keys, way, strict=True)}
         if stuck.size == 2:
             self.stuck = tuple(keys[k] for k in here)  # the train rests: all that could slip
             self.y[1] = self.y[3] = 0.0
@@ -321,11 +321,11 @@ class RubbingGears:
     def roots(self):
         """Root functions: flips, the ends of sticking, pairs that cross an end of the path, and the law's own."""
         state = self.evaluate(self.t, self.y)
-        found = []
+        functions = []
 
         def add(value, direction=-1.0):
             value.terminal, value.direction = True, direction
-            found.append(value)
+            functions.append(value)
 
         for key in state["keys"]:
             if key in self.stuck:
@@ -343,7 +343,7 @@ class RubbingGears:
             add(lambda t, y, key=(side, i): self.rubs(t, y, key))
         for value in self.law.roots(self):
             add(value)
-        return found
+        return functions
 
     def sliding(self, t, y, key):
         state = self.evaluate(t, y)

@@ -30,11 +30,15 @@ class MeanLaw:
 
     def __init__(self, scene):
         self.scene = scene
-        self.parts = [(one.surface, one.share) for one in scene.materials() if one.share > 0.0]
+        self.parts = [
+            (material.surface, material.share) for material in scene.materials() if material.share > 0.0
+        ]
         contact, coated = scene.contact, scene.coating.friction
         coated = contact.friction if coated is None else coated
         self.coefficients = [
-            contact.friction if one.name == "bare" else coated for one in scene.materials() if one.share > 0.0
+            contact.friction if material.name == "bare" else coated
+            for material in scene.materials()
+            if material.share > 0.0
         ]
         self.sigma = scene.surface.roughness
         places = np.arange(-2.0, 14.0, 0.02)
@@ -86,7 +90,7 @@ class ListedAsperities:
     """
 
     def __init__(self, scene, asperities, coefficient, strength=0.0, surface=None):
-        self.arcs, self.heights, self.radii = (np.asarray(one, float) for one in asperities)
+        self.arcs, self.heights, self.radii = (np.asarray(column, float) for column in asperities)
         tip = asperity_of(surface or scene.surface)
         dgamma, self.modulus = tip.work_of_adhesion, tip.modulus
         self.pc = 1.5 * math.pi * self.radii * dgamma
@@ -103,7 +107,7 @@ class ListedAsperities:
         held = sorted(self.joined.get(key, ()))
         if not held:
             return 0.0, 0.0, 0.0
-        delta, x, radius = (np.asarray(one) for one in self.overlaps(gap, a1, a2, base))
+        delta, x, radius = (np.asarray(column) for column in self.overlaps(gap, a1, a2, base))
         cube = jkr(np.maximum(delta[held] / self.dc[held], -1.0))
         loads = 2.0 * self.pc[held] * (cube - np.sqrt(2.0 * cube))
         along = 0.0
@@ -121,7 +125,7 @@ class ListedAsperities:
 
     def guards(self, gears, y):
         """Distances to joining (free) and letting go (joined) of every asperity of every pair, over 1 nm."""
-        found = {}
+        functions = {}
         for side, i, xi in gears.places(y[2]):
             inside = min(max(xi, 0.0), gears.g.path_length)
             gap = 0.5 * gears.scene.mesh.backlash - side * y[0]
@@ -130,8 +134,8 @@ class ListedAsperities:
             delta, _, _ = self.overlaps(gap, a1, gears.total - a1, gears.r1)
             held = np.zeros(len(self.arcs), bool)
             held[sorted(self.joined.get((side, i), ()))] = True
-            found[side, i] = np.where(held, delta + self.dc * (1.0 - 1e-12), -delta) / 1e-9
-        return found
+            functions[side, i] = np.where(held, delta + self.dc * (1.0 - 1e-12), -delta) / 1e-9
+        return functions
 
     def begin(self, gears):
         self.joined = {k: set(np.flatnonzero(v < 0.0)) for k, v in self.guards(gears, gears.y).items()}

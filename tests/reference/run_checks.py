@@ -128,10 +128,10 @@ def _check_gears(scene: Scene, row: Floats, unit: float, rigid: bool) -> str:
     sigma = scene.surface.roughness
     angle, u, force, torque, drive_gap, coast_gap = row[2:8]
     signs, gaps, slopes, radii = _pairs(scene, u, angle)
-    for name, sign, found in (("drive_gap", 1.0, drive_gap), ("coast_gap", -1.0, coast_gap)):
+    for name, sign, gap in (("drive_gap", 1.0, drive_gap), ("coast_gap", -1.0, coast_gap)):
         nearest = float(gaps[signs == sign].min())
-        if abs(found - nearest) > _GAP_TOLERANCE * sigma + 1e-9 * abs(nearest):
-            return f"{name} is {found:.6g} m where the geometry has {nearest:.6g} m"
+        if abs(gap - nearest) > _GAP_TOLERANCE * sigma + 1e-9 * abs(nearest):
+            return f"{name} is {gap:.6g} m where the geometry has {nearest:.6g} m"
     if not rigid:
         return ""
     low, high, size = _limits(scene, gaps, radii, scene.gears.face_width)
@@ -169,7 +169,9 @@ def _damping(scene: Scene, row: Floats) -> tuple[float, float]:
     gear_speed, pinion_speed = float(row[0]), float(row[1])
     radius = scene.geometry.base_radius_gear
     rate = scene.gears.pinion_base_radius * pinion_speed - radius * gear_speed
-    slope = sum(one.amplitude * one.order * scene.gears.pinion_teeth for one in scene.mesh.static_error)
+    slope = sum(
+        harmonic.amplitude * harmonic.order * scene.gears.pinion_teeth for harmonic in scene.mesh.static_error
+    )
     rounding = _ROUNDING * scene.gears.pinion_base_radius * abs(pinion_speed)
     return scene.mesh.damping * rate, scene.mesh.damping * (slope * abs(pinion_speed) + rounding)
 
@@ -200,7 +202,7 @@ def _limits(scene: Scene, gaps: Floats, radii: Floats, width: float) -> tuple[Fl
     if not near.any():
         return low, high, size
     anywhere = scene.coating.by_place  # where coverage is a table, any share of each material
-    found = []
+    bounds = []
     for surface, share, offset, _ in scene.materials():
         unit, own_gaps = (1.0 if anywhere else share) * np.sqrt(radii[near]), gaps[near] + offset
         loading = unit * line_force(own_gaps, 0.0, 1.0, width, surface, law)
@@ -208,16 +210,16 @@ def _limits(scene: Scene, gaps: Floats, radii: Floats, width: float) -> tuple[Fl
         parting = unit * line_force(own_gaps, stretch, 1.0, width, surface, law)
         pushing = unit * line_force(own_gaps, 0.0, 1.0, width, surface, "hertz")
         sizes = np.abs(pushing) + np.abs(parting) + np.abs(loading)
-        found.append((np.minimum(parting, loading), np.maximum(parting, loading), sizes))
-    lows, highs, sizes = (np.array(one) for one in zip(*found, strict=True))
+        bounds.append((np.minimum(parting, loading), np.maximum(parting, loading), sizes))
+    lows, highs, sizes = (np.array(column) for column in zip(*bounds, strict=True))
     low[near] = lows.min(axis=0) if anywhere else lows.sum(axis=0)
     high[near] = highs.max(axis=0) if anywhere else highs.sum(axis=0)
     size[near] = sizes.max(axis=0) if anywhere else sizes.sum(axis=0)
     return low, high, size
 
 
-def _within(name: str, found: float, low: float, high: float, size: float, unit: float) -> str:
+def _within(name: str, force: float, low: float, high: float, size: float, unit: float) -> str:
     slack = _FORCE_TOLERANCE * size + _NEGLECTED * unit
-    if low - slack <= found <= high + slack:
+    if low - slack <= force <= high + slack:
         return ""
-    return f"{name} is {found:.6g} N where the contact has {low:.6g} .. {high:.6g} N"
+    return f"{name} is {force:.6g} N where the contact has {low:.6g} .. {high:.6g} N"

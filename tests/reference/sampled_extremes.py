@@ -18,10 +18,14 @@ def with_extremes(scene, solution):
     """Put the extremes of its samples into a solution; parts of a run are shares of what has been sampled."""
     x = solution.samples
     force, speed = (x["force"], x["speed"]) if scene.roller else (x["mesh_force"], x["gear_speed"])
-    found = {"largest_mesh_force": force.max(), "smallest_mesh_force": force.min(), "final_speed": speed[-1]}
+    extremes = {
+        "largest_mesh_force": force.max(),
+        "smallest_mesh_force": force.min(),
+        "final_speed": speed[-1],
+    }
     if not scene.roller:
-        found |= _of_gear(solution.time, speed, x["gear_angle"] * scene.gears.gear_teeth / (2.0 * math.pi))
-    return dataclasses.replace(solution, extremes=Extremes(**found))
+        extremes |= _of_gear(solution.time, speed, x["gear_angle"] * scene.gears.gear_teeth / (2.0 * math.pi))
+    return dataclasses.replace(solution, extremes=Extremes(**extremes))
 
 
 def _of_gear(time, speed, place):

@@ -116,7 +116,7 @@ def free_way(plant: Plant, start: float, times: Floats) -> Floats:
         if at >= end:
             out[done:] = x
             break
-        found = solve_ivp(
+        solution = solve_ivp(
             slope,
             (at, piece),
             [w, x],
@@ -127,18 +127,18 @@ def free_way(plant: Plant, start: float, times: Floats) -> Floats:
             atol=[1e-12, 1e-12],
             max_step=plant.step if plant.step < math.inf else (piece - at) / 20,
         )
-        reached = float(found.t_events[0][0]) if len(found.t_events[0]) else piece
-        lookup = dict(zip(found.t.tolist(), found.y[1].tolist(), strict=True))
+        reached = float(solution.t_events[0][0]) if len(solution.t_events[0]) else piece
+        lookup = dict(zip(solution.t.tolist(), solution.y[1].tolist(), strict=True))
         while done < len(times) and times[done] <= reached and times[done] <= piece:
             out[done] = lookup.get(float(times[done]), x)
             done += 1
-        if len(found.t_events[0]):
-            moved = abs(float(found.y_events[0][0][1]) - x) + abs(reached - at)
-            at, w, x = reached, 0.0, float(found.y_events[0][0][1])
+        if len(solution.t_events[0]):
+            moved = abs(float(solution.y_events[0][0][1]) - x) + abs(reached - at)
+            at, w, x = reached, 0.0, float(solution.y_events[0][0][1])
             if moved == 0.0:
                 at += 1e-9 * end
         else:
-            at, w, x = piece, float(found.y[0][-1]), float(found.y[1][-1])
+            at, w, x = piece, float(solution.y[0][-1]), float(solution.y[1][-1])
     return out
 
 

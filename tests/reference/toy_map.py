@@ -25,7 +25,7 @@ def model(torques=None):
     return MapModel(
         fractions=FRACTIONS,
         torques=None if torques is None else lines,
-        sequences=np.stack([sequences(each) for each in lines]),
+        sequences=np.stack([sequences(line) for line in lines]),
         spread=np.zeros((len(lines), len(FRACTIONS))),
         speeds=np.sqrt(lines)[:, None] * np.ones(len(FRACTIONS)),
         slowest=0.5,

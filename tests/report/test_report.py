@@ -219,8 +219,8 @@ def test_sweep_that_has_not_kept_everything(keep, sections):
     page = Page(build_report(ds))
     shown = {value for tag, name, value in page.attributes if tag == "section" and name == "id"}
     assert shown == {"outcome", "pictures", "parameters", "provenance"} | sections
-    for each in outcomes(ds):
-        assert each.words in page.text
+    for outcome in outcomes(ds):
+        assert outcome.words in page.text
 
 
 @pytest.mark.parametrize("preset", ["teodorescu2009_low_speed", "roller_slow"])

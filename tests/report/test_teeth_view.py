@@ -107,7 +107,7 @@ def test_embedded_states_are_samples_of_the_record(single):
         travel = SCENE.initial.mesh_phase + turned
         assert phase == pytest.approx(travel % 1.0, abs=1e-6)
         (state,) = tooth_contacts(single, sample.time.item())
-        told = {(one.pair, one.flank): one for one in state.contacts}
+        told = {(contact.pair, contact.flank): contact for contact in state.contacts}
         pairs = states[at, 5:].reshape(run["places"], len(PAIR))
         nearest = pairs[np.isfinite(pairs[:, 0])]
         assert len(nearest)
@@ -115,9 +115,9 @@ def test_embedded_states_are_samples_of_the_record(single):
             sample.drive_gap.item(), rel=1e-6, abs=0.0
         )
         for pair in nearest:
-            one = told[int(pair[0]), Flank(int(pair[1]))]
-            assert pair[PAIR.index("force")] == pytest.approx(one.force, rel=1e-6, abs=1e-30)
-            assert pair[PAIR.index("coated")] == one.states["coated"]
+            contact = told[int(pair[0]), Flank(int(pair[1]))]
+            assert pair[PAIR.index("force")] == pytest.approx(contact.force, rel=1e-6, abs=1e-30)
+            assert pair[PAIR.index("coated")] == contact.states["coated"]
 
 
 def test_a_page_holds_no_more_states_than_it_may(swept):
@@ -142,22 +142,24 @@ def test_asperities_of_a_population_are_its_own(specimen):
     shown = 0
     for state in rows(run):
         (truth,) = tooth_contacts(specimen, float(state[0]))
-        contacts = {(one.pair, one.flank): one for one in truth.contacts}
+        contacts = {(contact.pair, contact.flank): contact for contact in truth.contacts}
         for pair in state[len(FRAME) :].reshape(-1, len(PAIR)):
             if np.isnan(pair[0]):
                 continue
             numbers = dict(zip(PAIR, pair, strict=True))
-            one = contacts[int(pair[0]), Flank(int(pair[1]))]
-            own = met_flank(scene, one.pair, one.flank)
-            which = list(one.asperities)
+            contact = contacts[int(pair[0]), Flank(int(pair[1]))]
+            flank = met_flank(scene, contact.pair, contact.flank)
+            which = list(contact.asperities)
             mine = joined[int(numbers["joined_from"]) : int(numbers["joined_to"])]
-            np.testing.assert_allclose(mine, np.stack([own.arc[which], own.height[which]], axis=1), rtol=1e-6)
+            np.testing.assert_allclose(
+                mine, np.stack([flank.arc[which], flank.height[which]], axis=1), rtol=1e-6
+            )
             arc, height, radius, material = flanks[int(numbers["row"])]
-            tallest = np.argsort(-own.height)[: arc.size]
-            np.testing.assert_allclose([arc, radius], [own.arc[tallest], own.radius[tallest]], rtol=1e-6)
-            np.testing.assert_array_equal(material, own.material[tallest])
+            tallest = np.argsort(-flank.height)[: arc.size]
+            np.testing.assert_allclose([arc, radius], [flank.arc[tallest], flank.radius[tallest]], rtol=1e-6)
+            np.testing.assert_array_equal(material, flank.material[tallest])
             assert np.isin(mine[:, 1], height).all()  # what is joined is among what is drawn
-            assert numbers["arc"] == pytest.approx(contact_arc(scene, one.place), rel=1e-6)
+            assert numbers["arc"] == pytest.approx(contact_arc(scene, contact.place), rel=1e-6)
             shown += len(which)
     assert shown == len(joined)
 
@@ -209,9 +211,9 @@ def test_browser_shows_the_teeth(kind, options, request, tmp_path):
         (state,) = tooth_contacts(run, time)
         shown = f"{time * 1e6:#.6g} \N{MICRO SIGN}s" if kind == "specimen" else f"{time * 1e3:#.6g} ms"
         assert seen[name].startswith(f"t = {shown}")
-        for one in state.contacts:
-            if one.flank == Flank.DRIVE and 0 < one.place < SCENE.geometry.path_length:
-                words = f"Pair {one.pair}, drive flank: gap {one.gap * 1e9:.4g} nm"
+        for contact in state.contacts:
+            if contact.flank == Flank.DRIVE and 0 < contact.place < SCENE.geometry.path_length:
+                words = f"Pair {contact.pair}, drive flank: gap {contact.gap * 1e9:.4g} nm"
                 assert words in seen[name]
     counted = "joined asperities: " if kind == "specimen" else "expected asperities in contact "
     assert counted in seen["slider"]

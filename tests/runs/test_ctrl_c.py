@@ -81,7 +81,7 @@ def command_in_a_fork(stage, arguments, folder, there):
     place, name = stage.split(":")
     module = importlib.import_module(place)
     real = getattr(module, name)
-    setattr(module, name, lambda *given, **options: (os.write(there, b"."), real(*given, **options))[1])
+    setattr(module, name, lambda *values, **options: (os.write(there, b"."), real(*values, **options))[1])
     os.chdir(folder)
     for number, file in ((1, "out"), (2, "err")):
         os.dup2(os.open(file, os.O_CREAT | os.O_WRONLY), number)

@@ -55,10 +55,10 @@ def test_the_members_of_a_sweep_get_one_warning(caplog, keep):
         ds = gd.sweep(SCENE, {"coating.sam_fraction": [1.0, 0.5]}, **kept)
     assert len(warned_of(caplog)) == 1
     assert "of 2 of 2 runs" in warned_of(caplog)[0]
-    np.testing.assert_allclose([one.imbalance for one in outcomes(ds)], 2.0)
+    np.testing.assert_allclose([outcome.imbalance for outcome in outcomes(ds)], 2.0)
 
 
 def test_a_verdict_kept_alone_knows_of_no_balance():
     ds = gd.sweep(SCENE, {"coating.sam_fraction": [1.0, 0.5]}, keep=["verdict"])
-    assert all(np.isnan(one.imbalance) for one in outcomes(ds))
+    assert all(np.isnan(outcome.imbalance) for outcome in outcomes(ds))
     assert "energy" not in outcomes(ds)[0].words

@@ -443,11 +443,11 @@ def kept(scene, words, start):
         "lag_rate": power / float(scene_units.time_unit),
     }
     rates = {name: np.sort(used[name]) * unit for name, unit in scaled.items()}
-    numbers = {**extremes} | {f"energy {name}": one for name, one in balance.items()} | rates
+    numbers = {**extremes} | {f"energy {name}": value for name, value in balance.items()} | rates
     numbers["standstill_list"] = np.nan_to_num(np.array(extremes.standstill_list))
     return {
-        name: one
-        for name, one in numbers.items()
+        name: value
+        for name, value in numbers.items()
         if name.removeprefix("energy ") not in OF_EACH_RUN | OF_THE_TORQUES
     }
 

@@ -53,16 +53,16 @@ def many_small_blocks(monkeypatch):
     monkeypatch.setattr(growing, "COPIED", 50)
 
 
-def assert_same(one, other):
+def assert_same(first, second):
     """Two archives, or an archive and what was computed in memory, which has no attribute ``validity``."""
-    one, other = one.copy(), other.copy()
-    limits = validity_attribute(gd.Scene.from_dict(json.loads(one.attrs["scene"])), largest_force(one))
-    for ds in (one, other):
+    first, second = first.copy(), second.copy()
+    limits = validity_attribute(gd.Scene.from_dict(json.loads(first.attrs["scene"])), largest_force(first))
+    for ds in (first, second):
         assert ds.attrs.pop("validity", limits) == limits
     for name in MOMENTARY:
-        one.attrs.pop(name)
-        other.attrs.pop(name)
-    xr.testing.assert_identical(one, other)
+        first.attrs.pop(name)
+        second.attrs.pop(name)
+    xr.testing.assert_identical(first, second)
 
 
 def assert_sound(path, whole):

@@ -210,7 +210,7 @@ def test_ctrl_c_keeps_the_finished_runs(monkeypatch, jobs, tmp_path):
 def test_progress_counts_runs():
     seen = []
     gd.sweep(LOW, {KEY: FRACTIONS}, jobs=1, progress=lambda done, total: seen.append((done, total)))
-    done = [each for each, _ in seen]
+    done = [count for count, _ in seen]
     assert sorted(done) == done
     assert done[-1] == 3.0
     assert {total for _, total in seen} == {3}

@@ -32,8 +32,8 @@ def whole():
 def equal_where_kept(kept, whole):
     for name in set(kept.variables) - {"verdict", "impacts", "flank_changes", "wall_time", "scene"}:
         assert kept[name].identical(whole[name]), name
-    assert kept.verdict.values.ravel().tolist() == [each.verdict for each in outcomes(whole)]
-    assert kept.impacts.values.ravel().tolist() == [each.impacts for each in outcomes(whole)]
+    assert kept.verdict.values.ravel().tolist() == [outcome.verdict for outcome in outcomes(whole)]
+    assert kept.impacts.values.ravel().tolist() == [outcome.impacts for outcome in outcomes(whole)]
 
 
 @pytest.mark.parametrize(
@@ -75,7 +75,7 @@ def test_every_group_together_is_everything(whole):
 def test_of_a_roller():
     over = {"roller.speed": [0.01, 0.02]}
     ds, whole = gd.sweep(ROLLER, over, keep=["extremes"]), gd.sweep(ROLLER, over)
-    assert ds.verdict.values.tolist() == [each.verdict for each in outcomes(whole)]
+    assert ds.verdict.values.tolist() == [outcome.verdict for outcome in outcomes(whole)]
     assert ds.gearidae.verdicts().largest_mesh_force.tolist() == whole.largest_mesh_force.values.tolist()
 
 

@@ -38,7 +38,7 @@ def test_the_result_says_what_was_zipped(tmp_path):
     assert ds.attrs["zipped"] == "drive.torque, load.drag"
     assert ds.attrs["title"].endswith("swept over drive.torque with load.drag")
     assert gd.open_archive(tmp_path / "zipped.nc").identical(ds)
-    assert [each.label for each in outcome.outcomes(ds)] == [{"torque": torque} for torque in TORQUES]
+    assert [member.label for member in outcome.outcomes(ds)] == [{"torque": torque} for torque in TORQUES]
 
 
 def test_a_zipped_pair_beside_a_product():

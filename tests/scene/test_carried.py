@@ -147,9 +147,9 @@ SPEED = 1.5 + 0.01 * np.sin(7e3 * TIME)
     ids=["column", "index"],
 )
 def test_records_with_durations(frame):
-    found = read_signal(frame)
-    np.testing.assert_allclose(found.time, TIME, rtol=1e-12, atol=0)
-    np.testing.assert_allclose(found.gear_speed, SPEED, rtol=1e-15)
+    signal = read_signal(frame)
+    np.testing.assert_allclose(signal.time, TIME, rtol=1e-12, atol=0)
+    np.testing.assert_allclose(signal.gear_speed, SPEED, rtol=1e-15)
 
 
 def test_records_of_arrays_with_durations():

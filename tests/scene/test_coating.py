@@ -18,7 +18,9 @@ def independent(first, second, **more):
 
 
 def test_independent_sides_make_three_materials():
-    materials = {one.name: one for one in independent(0.3, 0.6, thickness="2.5 nm").materials()}
+    materials = {
+        material.name: material for material in independent(0.3, 0.6, thickness="2.5 nm").materials()
+    }
     assert list(materials) == ["bare", "coated", "mixed"]
     shares = [materials[name].share for name in ("coated", "mixed", "bare")]
     assert shares == pytest.approx([0.18, 0.3 * 0.4 + 0.6 * 0.7, 0.28], rel=1e-15)
@@ -42,8 +44,8 @@ def test_thickness_recesses_bare_patches():
 
 
 def test_sides_swapped_are_the_same_interface():
-    assert [one.share for one in independent(0.3, 0.6).materials()] == pytest.approx(
-        [one.share for one in independent(0.6, 0.3).materials()], rel=1e-15
+    assert [material.share for material in independent(0.3, 0.6).materials()] == pytest.approx(
+        [material.share for material in independent(0.6, 0.3).materials()], rel=1e-15
     )
 
 
@@ -109,10 +111,12 @@ def test_means_are_over_the_teeth_that_meet():
     """Of 19 and 76 teeth the pinion's tooth i meets the gear's i, i + 19, ...: covered on covered or bare on bare."""
     pinion, gear = np.zeros((19, 1)), np.zeros((76, 1))
     pinion[:10], gear[np.arange(76) % 19 < 10] = 1.0, 1.0
-    shares = {one.name: one.share for one in tables(pinion, gear).materials()}
+    shares = {material.name: material.share for material in tables(pinion, gear).materials()}
     assert shares == pytest.approx({"coated": 10 / 19, "bare": 9 / 19, "mixed": 0.0}, abs=1e-15)
     gear = 1.0 - gear
-    assert {one.name: one.share for one in tables(pinion, gear).materials()}["mixed"] == pytest.approx(1.0)
+    assert {material.name: material.share for material in tables(pinion, gear).materials()}[
+        "mixed"
+    ] == pytest.approx(1.0)
 
 
 def test_tables_are_given_in_many_ways_and_kept(tmp_path):
@@ -128,7 +132,10 @@ def test_tables_are_given_in_many_ways_and_kept(tmp_path):
 
 def test_patches_may_have_the_share_of_the_interface_by_the_pinions_tooth():
     scene = RIGID.replace({"coating.pinion_table": [[0.2, 0.6]]})
-    assert [(one.name, round(one.share, 12)) for one in scene.materials()] == [("bare", 0.6), ("coated", 0.4)]
+    assert [(material.name, round(material.share, 12)) for material in scene.materials()] == [
+        ("bare", 0.6),
+        ("coated", 0.4),
+    ]
 
 
 @pytest.mark.parametrize(

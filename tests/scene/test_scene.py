@@ -176,7 +176,7 @@ def test_replace_reaches_into_lists(gears: Scene) -> None:
     two = gears.replace({"drive.harmonic": [{"amplitude": a, "frequency": 1} for a in (1e-12, 2e-12)]})
     second = two.replace({"drive.harmonic.1.amplitude": 0}).drive
     assert second is not None
-    assert [one.amplitude for one in second.harmonic] == [1e-12, 0.0]
+    assert [harmonic.amplitude for harmonic in second.harmonic] == [1e-12, 0.0]
 
 
 @pytest.mark.parametrize("nothing", [None, [], (), np.empty((0, 2))])

@@ -25,7 +25,7 @@ def at(key):
     for part in key.split("."):
         node = resolve(node)
         if "anyOf" in node and "properties" not in node:
-            node = next(resolve(each) for each in node["anyOf"] if "$ref" in each)
+            node = next(resolve(branch) for branch in node["anyOf"] if "$ref" in branch)
         node = node["properties"][part]
     return node
 
@@ -54,12 +54,12 @@ def test_no_key_is_described_that_scenes_do_not_know():
         for name, inner in node.get("properties", {}).items():
             yield f"{prefix}{name}", inner
             yield from keys(resolve(inner), f"{prefix}{name}.")
-            for each in inner.get("anyOf", []):
-                yield from keys(resolve(each), f"{prefix}{name}.") if "$ref" in each else ()
+            for branch in inner.get("anyOf", []):
+                yield from keys(resolve(branch), f"{prefix}{name}.") if "$ref" in branch else ()
 
-    found = {key for key, _ in keys(SCHEMA, "")}
+    described = {key for key, _ in keys(SCHEMA, "")}
     tables = set(Scene.model_fields)
-    assert found - tables - {"$schema"} == known - tables
+    assert described - tables - {"$schema"} == known - tables
     for name, definition in SCHEMA[
         "$defs"
     ].items():  # a torque law's parameters have the names that it gives them
@@ -131,7 +131,7 @@ def test_every_preset_is_valid(name, validator):
 def test_schedules_are_pairs_or_a_table(key, validator):
     table, _, name = key.partition(".")
     case = tomllib.loads(dump_case(gd.preset("teodorescu2009_low_speed")))
-    for given in ([[0, 1], ["5 ms", 2]], {"file": "x.csv", "time": "t [s]"}, {"knots": [[0, 1]]}):
-        assert validator.is_valid({**case, table: {**case.get(table, {}), name: given}})
+    for schedule in ([[0, 1], ["5 ms", 2]], {"file": "x.csv", "time": "t [s]"}, {"knots": [[0, 1]]}):
+        assert validator.is_valid({**case, table: {**case.get(table, {}), name: schedule}})
     for wrong in ([[0, 1, 2]], [[True, 1]], True):
         assert not validator.is_valid({**case, table: {**case.get(table, {}), name: wrong}})

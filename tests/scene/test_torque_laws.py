@@ -52,7 +52,7 @@ def test_one_number_needs_no_list(scene):
 
 
 @pytest.mark.parametrize(
-    ("given", "message"),
+    ("law", "message"),
     [
         (
             {"name": "moter", "parameters": [1, 2]},
@@ -71,9 +71,9 @@ def test_one_number_needs_no_list(scene):
         ("motor", r"drive\.law = motor: must be a table"),
     ],
 )
-def test_what_is_no_law_is_refused(scene, given, message):
+def test_what_is_no_law_is_refused(scene, law, message):
     with pytest.raises(SceneError, match=message):
-        scene.replace({"drive.law": given})
+        scene.replace({"drive.law": law})
 
 
 def test_a_load_with_a_law_is_dry(scene):
@@ -154,9 +154,9 @@ def test_parameters_without_a_unit_take_any(scene):
     ],
 )
 def test_named_parameters_that_do_not_fit(scene, changes, message):
-    given = {name: value for name, value in (ENGINE | changes).items() if value is not None}
+    parameters = {name: value for name, value in (ENGINE | changes).items() if value is not None}
     with pytest.raises(SceneError, match=message) as refused:
-        scene.replace({"drive.law": given})
+        scene.replace({"drive.law": parameters})
     assert "\n" not in str(refused.value)
 
 
@@ -188,10 +188,12 @@ def test_a_law_takes_three_or_four_arguments():
         gd.register_torque("never")(lambda t, p: 0.0)
 
 
-@pytest.mark.parametrize("given", [{"amplitude": 1e-12}, {"amplitude": 1e-12, "frequency": 1.0, "order": 2}])
-def test_a_harmonic_follows_time_or_angle(scene, given):
+@pytest.mark.parametrize(
+    "harmonic", [{"amplitude": 1e-12}, {"amplitude": 1e-12, "frequency": 1.0, "order": 2}]
+)
+def test_a_harmonic_follows_time_or_angle(scene, harmonic):
     with pytest.raises(SceneError, match="either the frequency in time or the order"):
-        scene.replace({"drive.harmonic": given})
+        scene.replace({"drive.harmonic": harmonic})
 
 
 def test_a_harmonic_of_the_angle_survives_every_way_of_writing_a_scene(scene, tmp_path):

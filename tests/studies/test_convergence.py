@@ -29,13 +29,13 @@ def elastic():
 
 
 def test_errors_are_those_of_a_closed_form(elastic):
-    one = elastic.sel(figure="final_speed")
+    speed = elastic.sel(figure="final_speed")
     exact = ELASTIC.roller.speed
-    true = np.sqrt(((np.abs(one["value"]) / abs(exact) - 1.0) ** 2).mean("run"))
-    assert abs(abs(float(one["reference"])) / abs(exact) - 1.0) <= float(one["error"][-1])
+    true = np.sqrt(((np.abs(speed["value"]) / abs(exact) - 1.0) ** 2).mean("run"))
+    assert abs(abs(float(speed["reference"])) / abs(exact) - 1.0) <= float(speed["error"][-1])
     # the reference is out by the error at the tightest tolerance, a hundredth of the others or less
-    np.testing.assert_allclose(one["error"][:-1], true[:-1], rtol=0.05)
-    assert float(true[-1]) <= 3.0 * float(one["error"][-1])
+    np.testing.assert_allclose(speed["error"][:-1], true[:-1], rtol=0.05)
+    assert float(true[-1]) <= 3.0 * float(speed["error"][-1])
 
 
 def test_values_are_those_of_runs_made_by_hand(elastic):
@@ -52,36 +52,36 @@ def test_tighter_tolerances_take_more_steps(elastic):
 
 
 def test_the_verdict_is_the_loosest_tolerance_within_the_target(elastic):
-    one = elastic.sel(figure="final_speed")
-    assert one["verdict"].item() == "converges"
-    loosest = max(rtol for rtol, error in zip(SHORT, one["error"].values, strict=True) if error <= 1e-4)
-    assert float(one["rtol_to_take"]) == loosest
-    assert float(one["time_to_take"]) == float(one["wall_time"].sel(rtol=loosest))
+    speed = elastic.sel(figure="final_speed")
+    assert speed["verdict"].item() == "converges"
+    loosest = max(rtol for rtol, error in zip(SHORT, speed["error"].values, strict=True) if error <= 1e-4)
+    assert float(speed["rtol_to_take"]) == loosest
+    assert float(speed["time_to_take"]) == float(speed["wall_time"].sel(rtol=loosest))
 
 
 def test_a_scatter_that_falls_with_the_tolerance_converges():
-    found = judge(scattered(5.0 * RUNGS), RUNGS, 1e-3)
-    assert (found["verdict"], found["rtol_to_take"]) == ("converges", 1e-4)
+    judgement = judge(scattered(5.0 * RUNGS), RUNGS, 1e-3)
+    assert (judgement["verdict"], judgement["rtol_to_take"]) == ("converges", 1e-4)
     # nine runs know a standard deviation to a quarter; the tightest tolerance has the reference for its mean
-    np.testing.assert_allclose(found["scatter"], 5.0 * RUNGS, rtol=0.75)
-    np.testing.assert_allclose(found["error"][:-1], 5.0 * RUNGS[:-1], rtol=0.75)
+    np.testing.assert_allclose(judgement["scatter"], 5.0 * RUNGS, rtol=0.75)
+    np.testing.assert_allclose(judgement["error"][:-1], 5.0 * RUNGS[:-1], rtol=0.75)
 
 
 def test_an_error_without_scatter_is_the_distance_to_the_tightest():
     values = np.repeat((1.0 + 50.0 * RUNGS)[:, None], 9, axis=1)
-    found = judge(values, RUNGS, 1e-3)
-    np.testing.assert_allclose(found["error"][:-1], 50.0 * (RUNGS[:-1] - RUNGS[-1]), rtol=1e-6)
-    assert found["rtol_to_take"] == 1e-5
+    judgement = judge(values, RUNGS, 1e-3)
+    np.testing.assert_allclose(judgement["error"][:-1], 50.0 * (RUNGS[:-1] - RUNGS[-1]), rtol=1e-6)
+    assert judgement["rtol_to_take"] == 1e-5
     # of the first order, a tenth of the last difference is what remains, but for a tenth of that
-    assert found["error"][-1] == pytest.approx(50.0 * RUNGS[-1], rel=0.11)
+    assert judgement["error"][-1] == pytest.approx(50.0 * RUNGS[-1], rel=0.11)
 
 
 def test_a_scatter_that_stays_is_chaos_and_says_how_many_starts_a_mean_needs():
-    found = judge(scattered(0.005), RUNGS, 1e-3)
-    assert found["verdict"] == "chaotic"
+    judgement = judge(scattered(0.005), RUNGS, 1e-3)
+    assert judgement["verdict"] == "chaotic"
     # (0.005 / 0.001)^2 = 25; eighteen runs know the deviation to 17 %, its square to 34 %
-    assert 25.0 * (1.0 - 3 * 0.17) ** 2 < found["starts"] < 25.0 * (1.0 + 3 * 0.17) ** 2
-    assert np.isnan(found["rtol_to_take"])
+    assert 25.0 * (1.0 - 3 * 0.17) ** 2 < judgement["starts"] < 25.0 * (1.0 + 3 * 0.17) ** 2
+    assert np.isnan(judgement["rtol_to_take"])
 
 
 def test_a_scatter_that_falls_but_not_far_enough_is_not_yet():
@@ -91,16 +91,16 @@ def test_a_scatter_that_falls_but_not_far_enough_is_not_yet():
 def test_outcomes_that_differ_between_neighbours_are_chaos():
     values = scattered(1e-6)
     values[-1, 4] = np.nan
-    found = judge(values, RUNGS, 1e-3)
-    assert found["verdict"] == "chaotic"
-    assert np.isnan(found["starts"])
+    judgement = judge(values, RUNGS, 1e-3)
+    assert judgement["verdict"] == "chaotic"
+    assert np.isnan(judgement["starts"])
 
 
 def test_a_value_that_loose_runs_lack_and_tight_ones_have_converges():
     values = scattered(1e-6)
     values[0, 4] = np.nan
-    found = judge(values, RUNGS, 1e-3)
-    assert (found["verdict"], found["rtol_to_take"]) == ("converges", 1e-4)
+    judgement = judge(values, RUNGS, 1e-3)
+    assert (judgement["verdict"], judgement["rtol_to_take"]) == ("converges", 1e-4)
 
 
 def test_no_value_at_all():
@@ -108,8 +108,8 @@ def test_no_value_at_all():
 
 
 def test_a_quantity_that_is_zero_converges():
-    found = judge(np.zeros((RUNGS.size, 9)), RUNGS, 1e-3)
-    assert (found["verdict"], found["rtol_to_take"]) == ("converges", 1e-3)
+    judgement = judge(np.zeros((RUNGS.size, 9)), RUNGS, 1e-3)
+    assert (judgement["verdict"], judgement["rtol_to_take"]) == ("converges", 1e-3)
 
 
 @pytest.mark.parametrize(

@@ -15,29 +15,29 @@ def decay(state):
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-5])
 def test_a_constant_rate_decays_exponentially(tolerance):
     start = np.array([1.0, 0.5])
-    found = jump(decay, start, passages=2e9, tolerance=tolerance)
-    assert (found.ending, found.passages[-1]) == ("passages", 2e9)
-    assert math.isnan(found.sticks_by)
-    expected = start * np.exp(-1e-9 * np.array(found.passages))[:, None]
+    result = jump(decay, start, passages=2e9, tolerance=tolerance)
+    assert (result.ending, result.passages[-1]) == ("passages", 2e9)
+    assert math.isnan(result.sticks_by)
+    expected = start * np.exp(-1e-9 * np.array(result.passages))[:, None]
     # each step may be out by the tolerance of the state then, and a tenth of it absolutely
-    np.testing.assert_allclose(found.states, expected, rtol=2 * tolerance * len(found.passages))
+    np.testing.assert_allclose(result.states, expected, rtol=2 * tolerance * len(result.passages))
 
 
 def test_half_the_tolerance_halves_the_error_and_more():
     """The pair's error in a step goes with the third power of its length, as its estimate does."""
     errors = []
     for tolerance in (4e-3, 5e-4, 6.25e-5):
-        found = jump(decay, np.ones(1), passages=2e9, tolerance=tolerance)
-        errors.append(abs(found.states[-1][0] - math.exp(-2.0)))
+        result = jump(decay, np.ones(1), passages=2e9, tolerance=tolerance)
+        errors.append(abs(result.states[-1][0] - math.exp(-2.0)))
     assert errors[1] < errors[0] / 4
     assert errors[2] < errors[1] / 4
 
 
 def test_a_coverage_ends_it():
-    found = jump(decay, np.ones(1), passages=1e12, tolerance=1e-5, least=0.5)
-    assert found.ending == "coverage"
-    assert found.states[-1].mean() == pytest.approx(0.5, abs=1e-9)
-    assert found.passages[-1] == pytest.approx(1e9 * math.log(2.0), rel=1e-4)
+    result = jump(decay, np.ones(1), passages=1e12, tolerance=1e-5, least=0.5)
+    assert result.ending == "coverage"
+    assert result.states[-1].mean() == pytest.approx(0.5, abs=1e-9)
+    assert result.passages[-1] == pytest.approx(1e9 * math.log(2.0), rel=1e-4)
 
 
 @pytest.mark.parametrize("bracket", [0.02, 0.002])
@@ -49,33 +49,33 @@ def test_where_the_gear_sticks_is_bracketed(bracket):
             raise GearStuck
         return decay(state)
 
-    found = jump(rate, np.ones(1), passages=1e12, tolerance=1e-6, bracket=bracket)
+    result = jump(rate, np.ones(1), passages=1e12, tolerance=1e-6, bracket=bracket)
     truth = -1e9 * math.log(0.3)
-    assert found.ending == "sticks"
+    assert result.ending == "sticks"
     # the bracket is that of the trial states, which are Euler steps of this width
-    assert found.passages[-1] <= truth * (1 + 1e-5)
-    assert found.sticks_by == pytest.approx(truth, rel=2 * bracket)
-    assert found.sticks_by - found.passages[-1] <= bracket * found.sticks_by
+    assert result.passages[-1] <= truth * (1 + 1e-5)
+    assert result.sticks_by == pytest.approx(truth, rel=2 * bracket)
+    assert result.sticks_by - result.passages[-1] <= bracket * result.sticks_by
 
 
 def test_what_sticks_from_the_start_has_no_life():
     def rate(state):
         raise GearStuck
 
-    found = jump(rate, np.ones(1), passages=1e12, tolerance=1e-3)
-    assert (found.ending, found.sticks_by, found.passages) == ("sticks", 0.0, [0.0])
+    result = jump(rate, np.ones(1), passages=1e12, tolerance=1e-3)
+    assert (result.ending, result.sticks_by, result.passages) == ("sticks", 0.0, [0.0])
 
 
 def test_nothing_is_lost_without_a_rate():
-    found = jump(np.zeros_like, np.ones(3), passages=1e6, tolerance=1e-3)
-    assert found.passages == [0.0, 1e6]
-    np.testing.assert_array_equal(found.states[-1], 1.0)
+    result = jump(np.zeros_like, np.ones(3), passages=1e6, tolerance=1e-3)
+    assert result.passages == [0.0, 1e6]
+    np.testing.assert_array_equal(result.states[-1], 1.0)
 
 
 def test_archard_ends_at_zero():
-    found = jump(lambda f: np.where(f > 0.0, -1e-6, 0.0), np.array([1.0]), passages=3e6, tolerance=1e-3)
-    assert found.states[-1][0] == pytest.approx(0.0, abs=1e-3)
-    assert min(state.min() for state in found.states) >= 0.0
+    result = jump(lambda f: np.where(f > 0.0, -1e-6, 0.0), np.array([1.0]), passages=3e6, tolerance=1e-3)
+    assert result.states[-1][0] == pytest.approx(0.0, abs=1e-3)
+    assert min(state.min() for state in result.states) >= 0.0
 
 
 def test_no_rate_is_asked_for_where_nothing_is_left():
@@ -88,10 +88,10 @@ def test_no_rate_is_asked_for_where_nothing_is_left():
             raise GearStuck
         return -1e-9 / (state - 0.29) ** 2
 
-    found = jump(rate, np.ones(1), passages=1e12, tolerance=0.03)
-    assert found.ending == "sticks"
+    result = jump(rate, np.ones(1), passages=1e12, tolerance=0.03)
+    assert result.ending == "sticks"
     # (f - 0.29)^3 / 3 falls evenly
-    assert found.sticks_by == pytest.approx(1e9 * (0.71**3 - 0.01**3) / 3.0, rel=0.02)
+    assert result.sticks_by == pytest.approx(1e9 * (0.71**3 - 0.01**3) / 3.0, rel=0.02)
     assert min(asked) > 0.0
 
 
@@ -139,16 +139,16 @@ def test_the_last_passages_are_followed_cycle_by_cycle():
         return -0.002 / (state - 0.25)
 
     direct = Steps(rate)
-    found = jump(rate, np.ones(1), passages=1e12, tolerance=1e-4, direct=direct)
-    assert found.ending == "sticks"
+    result = jump(rate, np.ones(1), passages=1e12, tolerance=1e-4, direct=direct)
+    assert result.ending == "sticks"
     # steps of h lag behind the rates by h/2 log(their ratio): 0.07 passages; the bracket is two cycles
-    assert found.sticks_by == pytest.approx(140.0, abs=0.07 + 0.1)
-    assert found.sticks_by - found.passages[-1] == pytest.approx(0.1)
+    assert result.sticks_by == pytest.approx(140.0, abs=0.07 + 0.1)
+    assert result.sticks_by - result.passages[-1] == pytest.approx(0.1)
     assert 100 < direct.run < 500  # 5 to 25 of 140 passages
-    n = np.array(found.passages)
+    n = np.array(result.passages)
     truth = 0.25 + np.sqrt(0.5625 - 0.004 * n)
-    np.testing.assert_allclose(np.array(found.states)[:, 0], truth, rtol=0.01)
-    assert np.abs(np.diff(found.states, axis=0))[n[1:] > 135.0].max() < 0.012
+    np.testing.assert_allclose(np.array(result.states)[:, 0], truth, rtol=0.01)
+    assert np.abs(np.diff(result.states, axis=0))[n[1:] > 135.0].max() < 0.012
 
 
 def test_a_loss_that_slows_down_is_jumped_over_again():
@@ -156,20 +156,20 @@ def test_a_loss_that_slows_down_is_jumped_over_again():
         return -0.1 * state
 
     direct = Steps(rate)
-    found = jump(rate, np.ones(1), passages=8.0, tolerance=1e-5, direct=direct)
-    assert found.ending == "passages"
-    assert found.passages[-1] == pytest.approx(8.0)
-    assert found.states[-1][0] == pytest.approx(
+    result = jump(rate, np.ones(1), passages=8.0, tolerance=1e-5, direct=direct)
+    assert result.ending == "passages"
+    assert result.passages[-1] == pytest.approx(8.0)
+    assert result.states[-1][0] == pytest.approx(
         math.exp(-0.8), rel=0.1 * 0.05 * 0.5 * 8.0 + 1e-4
     )  # Euler's error
     late = Steps(lambda state: -1e-3 * state)
-    found = jump(lambda state: -1e-3 * state, np.ones(1), passages=1e3, tolerance=1e-3, direct=late)
+    result = jump(lambda state: -1e-3 * state, np.ones(1), passages=1e3, tolerance=1e-3, direct=late)
     assert late.run == 0
     slow = Steps(rate_that_fades)
-    found = jump(rate_that_fades, np.full(1, 0.9), passages=1e4, tolerance=1e-3, direct=slow)
-    assert found.passages[-1] == 1e4
+    result = jump(rate_that_fades, np.full(1, 0.9), passages=1e4, tolerance=1e-3, direct=slow)
+    assert result.passages[-1] == 1e4
     assert 0 < slow.run < 2000  # of 200 000 cycles
-    assert found.states[-1][0] == pytest.approx(0.4, abs=1e-3)
+    assert result.states[-1][0] == pytest.approx(0.4, abs=1e-3)
 
 
 def rate_that_fades(state):
@@ -180,7 +180,7 @@ def rate_that_fades(state):
 @pytest.mark.parametrize("least", [0.6, 0.35])
 def test_a_coverage_ends_cycles_too(least):
     direct = Steps(lambda state: -0.05 + 0.0 * state)
-    found = jump(direct.rate, np.ones(1), passages=1e12, tolerance=1e-3, least=least, direct=direct)
-    assert found.ending == "coverage"
-    assert found.states[-1][0] == pytest.approx(least, abs=1e-9)
-    assert found.passages[-1] == pytest.approx((1.0 - least) / 0.05, rel=1e-6)
+    result = jump(direct.rate, np.ones(1), passages=1e12, tolerance=1e-3, least=least, direct=direct)
+    assert result.ending == "coverage"
+    assert result.states[-1][0] == pytest.approx(least, abs=1e-9)
+    assert result.passages[-1] == pytest.approx((1.0 - least) / 0.05, rel=1e-6)

@@ -15,7 +15,7 @@ LOW = gd.preset("teodorescu2009_low_speed")
 
 
 def of_functions(*frozen):
-    return [Distribution(f"x{number}", "of a test", each) for number, each in enumerate(frozen)]
+    return [Distribution(f"x{number}", "of a test", function) for number, function in enumerate(frozen)]
 
 
 @pytest.mark.parametrize(
@@ -29,11 +29,11 @@ def of_functions(*frozen):
     ],
 )
 def test_texts_with_units_are_the_distributions_of_scipy(text, frozen):
-    (found,) = read_distributions(LOW, {"surface.asperity_radius": text})
+    (distribution,) = read_distributions(LOW, {"surface.asperity_radius": text})
     share = np.linspace(0.01, 0.99, 7)
-    np.testing.assert_allclose(found.quantiles(share), frozen.ppf(share), rtol=1e-12)
+    np.testing.assert_allclose(distribution.quantiles(share), frozen.ppf(share), rtol=1e-12)
     values = frozen.ppf(share)
-    np.testing.assert_allclose(found.log_density(values), frozen.logpdf(values), rtol=1e-9)
+    np.testing.assert_allclose(distribution.log_density(values), frozen.logpdf(values), rtol=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -47,19 +47,19 @@ def test_texts_with_units_are_the_distributions_of_scipy(text, frozen):
 def test_a_spread_of_temperatures_has_no_zero(text, frozen):
     """Quantiles to 1e-12: sums with 273.15 are rounded."""
     share = np.linspace(0.01, 0.99, 7)
-    found = read_distribution("temperature", text, "K")
-    np.testing.assert_allclose(found.quantiles(share), frozen.ppf(share), rtol=1e-12)
+    distribution = read_distribution("temperature", text, "K")
+    np.testing.assert_allclose(distribution.quantiles(share), frozen.ppf(share), rtol=1e-12)
 
 
 def test_a_lognormal_has_two_thirds_within_its_geometric_deviation():
-    (found,) = read_distributions(LOW, {"surface.energy": "lognormal(1.5 J/m^2, 1.2)"})
-    within = found.frozen.cdf(1.5 * 1.2) - found.frozen.cdf(1.5 / 1.2)
+    (distribution,) = read_distributions(LOW, {"surface.energy": "lognormal(1.5 J/m^2, 1.2)"})
+    within = distribution.frozen.cdf(1.5 * 1.2) - distribution.frozen.cdf(1.5 / 1.2)
     assert within == pytest.approx(stats.norm.cdf(1.0) - stats.norm.cdf(-1.0), rel=1e-12)
-    assert found.frozen.median() == pytest.approx(1.5, rel=1e-12)
+    assert distribution.frozen.median() == pytest.approx(1.5, rel=1e-12)
 
 
 @pytest.mark.parametrize(
-    ("key", "given", "words"),
+    ("key", "text", "words"),
     [
         ("surface.asperity_radius", "normal(450 nm, 50 J)", "standard deviation"),
         ("surface.asperity_radius", "normal(450 nm, 5e-8)", "5e-8 has no unit beside 450 nm"),
@@ -86,9 +86,9 @@ def test_a_lognormal_has_two_thirds_within_its_geometric_deviation():
         ("run.duration", "uniform(0.1, 0.2)", "same time"),
     ],
 )
-def test_malformed_distributions_name_the_key_and_what_is_allowed(key, given, words):
+def test_malformed_distributions_name_the_key_and_what_is_allowed(key, text, words):
     with pytest.raises(gd.SceneError) as refused:
-        read_distributions(LOW, {key: given})
+        read_distributions(LOW, {key: text})
     assert refused.value.key == key
     assert words in str(refused.value)
 
@@ -102,13 +102,13 @@ def test_nothing_to_vary(vary):
 @pytest.mark.parametrize("design", DESIGNS)
 def test_marginals_are_the_distributions_and_the_seed_decides(design):
     """500 members; Kolmogorov and Smirnov's distance exceeds 0.073 in one of a hundred random draws."""
-    given = of_functions(stats.norm(3.0, 2.0), stats.uniform(0.0, 5.0))
-    made = plain_design(given, 500, design, seed=4)
-    for column, each in zip(made.values.T, given, strict=True):
-        assert stats.kstest(column, each.frozen.cdf).statistic < 0.073
+    distributions = of_functions(stats.norm(3.0, 2.0), stats.uniform(0.0, 5.0))
+    made = plain_design(distributions, 500, design, seed=4)
+    for column, distribution in zip(made.values.T, distributions, strict=True):
+        assert stats.kstest(column, distribution.frozen.cdf).statistic < 0.073
     assert abs(np.corrcoef(made.values.T)[0, 1]) < 0.12  # 2.7 standard deviations of random draws
-    assert np.array_equal(made.values, plain_design(given, 500, design, seed=4).values)
-    assert not np.array_equal(made.values, plain_design(given, 500, design, seed=5).values)
+    assert np.array_equal(made.values, plain_design(distributions, 500, design, seed=4).values)
+    assert not np.array_equal(made.values, plain_design(distributions, 500, design, seed=5).values)
     assert made.drawn.all()
 
 
@@ -123,18 +123,18 @@ def test_a_pick_freeze_design_takes_one_column_from_the_other_matrix():
     for key in range(3):
         mixed = blocks[2 + key]
         assert np.array_equal(mixed[:, key], blocks[1][:, key])
-        others = [each for each in range(3) if each != key]
+        others = [number for number in range(3) if number != key]
         assert np.array_equal(mixed[:, others], blocks[0][:, others])
     assert made.matrix[::16].tolist() == ["A", "B", "AB0", "AB1", "AB2"]
     assert made.drawn.sum() == 32
     assert abs(np.corrcoef(blocks[0].ravel(), blocks[1].ravel())[0, 1]) < 0.5
 
 
-def agrees(found, first, total):
+def agrees(indices, first, total):
     """Within four of its own standard uncertainties, which are themselves below 0.06."""
     for values, spread, exact in (
-        (found.first_order, found.first_order_uncertainty, first),
-        (found.total_order, found.total_order_uncertainty, total),
+        (indices.first_order, indices.first_order_uncertainty, first),
+        (indices.total_order, indices.total_order_uncertainty, total),
     ):
         assert (np.abs(values - exact) <= 4.0 * spread).all()
         assert (spread < 0.06).all()
@@ -145,7 +145,7 @@ def test_indices_of_a_linear_function(design):
     """f = sum a x of independent x: both indices are a^2 var(x) over their sum."""
     weights, deviations = np.array([1.0, -2.0, 0.5]), np.array([1.0, 1.0, 3.0])
     made = pick_freeze_design(
-        of_functions(*(stats.norm(2.0, each) for each in deviations)), 1024, design, seed=1
+        of_functions(*(stats.norm(2.0, deviation) for deviation in deviations)), 1024, design, seed=1
     )
     exact = (weights * deviations) ** 2 / np.sum((weights * deviations) ** 2)
     agrees(indices_of(made.values @ weights, 3, seed=1), exact, exact)
@@ -161,9 +161,9 @@ def test_indices_of_the_ishigami_function(design):
     total = (alone + np.array([both, 0.0, both])) / variance
     made = pick_freeze_design(of_functions(*[stats.uniform(-np.pi, 2.0 * np.pi)] * 3), 2048, design, seed=6)
     x1, x2, x3 = made.values.T
-    found = indices_of(np.sin(x1) + a * np.sin(x2) ** 2 + b * x3**4 * np.sin(x1), 3, seed=6)
-    agrees(found, alone / variance, total)
-    assert found.rows == 2048
+    indices = indices_of(np.sin(x1) + a * np.sin(x2) ** 2 + b * x3**4 * np.sin(x1), 3, seed=6)
+    agrees(indices, alone / variance, total)
+    assert indices.rows == 2048
 
 
 def test_a_single_key_has_all_of_the_variance():
@@ -178,11 +178,11 @@ def test_rows_that_are_incomplete_do_not_count():
     made = pick_freeze_design(of_functions(stats.norm(), stats.norm()), 64, "sobol", seed=3)
     figures = made.values @ [1.0, 2.0]
     figures[64 + 3] = np.nan  # row 3 of B
-    found = indices_of(figures, 2, seed=9)
-    assert found.rows == 32
+    indices = indices_of(figures, 2, seed=9)
+    assert indices.rows == 32
     rows = [row for row in range(33) if row != 3]
     alone = indices_of(figures.reshape(4, 64)[:, rows].ravel(), 2, seed=9)
-    assert np.array_equal(found.total_order, alone.total_order)
+    assert np.array_equal(indices.total_order, alone.total_order)
     assert np.isnan(indices_of(np.full(256, 1.0), 2).total_order).all()  # nothing varies
     assert np.isnan(indices_of(np.full(256, np.nan), 2).first_order).all()
 

@@ -30,7 +30,7 @@ STICKING = gd.preset("teodorescu2009_low_speed").replace({"drive.torque": 4.2e-1
 
 
 @pytest.fixture(scope="module")
-def found():
+def ensemble():
     return gd.studies.ensemble(LOW, VARY, 8, of="min_gear_speed", seed=3)
 
 
@@ -39,28 +39,28 @@ def stuck():
     return gd.studies.ensemble(STICKING, {"coating.sam_fraction": "uniform(0.4, 0.65)"}, 24)
 
 
-def test_a_member_is_the_run_of_its_scene(found):
-    assert found.sizes["member"] == 8 * 4
+def test_a_member_is_the_run_of_its_scene(ensemble):
+    assert ensemble.sizes["member"] == 8 * 4
     for number in (0, 13, 31):
-        one = found.isel(member=number)
+        drawn = ensemble.isel(member=number)
         scene = LOW.replace(
-            {"coating.sam_fraction": float(one.sam_fraction), "drive.torque": float(one.torque)}
+            {"coating.sam_fraction": float(drawn.sam_fraction), "drive.torque": float(drawn.torque)}
         )
-        assert one.gearidae.scene == scene.replace({"run.samples": "off"})
+        assert drawn.gearidae.scene == scene.replace({"run.samples": "off"})
         alone = gd.simulate(scene)
-        assert float(one.min_gear_speed) == float(alone.min_gear_speed)
-        assert float(one.largest_mesh_force) == float(alone.largest_mesh_force)
+        assert float(drawn.min_gear_speed) == float(alone.min_gear_speed)
+        assert float(drawn.largest_mesh_force) == float(alone.largest_mesh_force)
         (outcome,) = outcomes(alone)
-        assert (one.verdict.item(), one.impacts.item()) == (outcome.verdict, outcome.impacts)
-        assert VerdictCode(one.verdict_code.item()).word == outcome.verdict
+        assert (drawn.verdict.item(), drawn.impacts.item()) == (outcome.verdict, outcome.impacts)
+        assert VerdictCode(drawn.verdict_code.item()).word == outcome.verdict
 
 
 def test_members_of_other_coefficients_of_friction():
     """More friction, less speed: within half a per cent of the closed form, which knows no start."""
     scene = gd.preset("teodorescu2009").replace({"drive.harmonic": None, "run.duration": 2e-4})
-    found = gd.studies.ensemble(scene, {"contact.friction": "uniform(0, 0.3)"}, 2, of="settled_gear_speed")
-    coefficients, where = np.unique(found.friction.values, return_index=True)
-    speeds = found.settled_gear_speed.values[where]
+    ensemble = gd.studies.ensemble(scene, {"contact.friction": "uniform(0, 0.3)"}, 2, of="settled_gear_speed")
+    coefficients, where = np.unique(ensemble.friction.values, return_index=True)
+    speeds = ensemble.settled_gear_speed.values[where]
     assert where.size > 3
     assert (np.diff(speeds) < 0.0).all()
     expected = [gd.studies.steady_speed(scene.replace({"contact.friction": mu})) for mu in coefficients]
@@ -87,25 +87,25 @@ def test_codes_stand_for_words():
     np.testing.assert_array_equal(sticking(codes), [[1.0, 0.0], [1.0, np.nan]])
 
 
-def test_indices_are_those_of_the_figure(found):
+def test_indices_are_those_of_the_figure(ensemble):
     """The speed falls where adhesion or a weaker drive holds the gear: both keys, and nothing else, matter."""
-    assert found.attrs["index_of"] == "min_gear_speed"
-    assert found.attrs["index_rows"] == 8
-    assert found.parameter.values.tolist() == list(VARY)
-    assert float(found.total_order.sum()) > 0.5
-    assert (found.total_order_uncertainty.values > 0.0).all()
-    assert found.matrix.values[::8].tolist() == ["A", "B", "AB0", "AB1"]
+    assert ensemble.attrs["index_of"] == "min_gear_speed"
+    assert ensemble.attrs["index_rows"] == 8
+    assert ensemble.parameter.values.tolist() == list(VARY)
+    assert float(ensemble.total_order.sum()) > 0.5
+    assert (ensemble.total_order_uncertainty.values > 0.0).all()
+    assert ensemble.matrix.values[::8].tolist() == ["A", "B", "AB0", "AB1"]
 
 
-def test_executors_and_the_archive_do_not_matter(found, tmp_path):
+def test_executors_and_the_archive_do_not_matter(ensemble, tmp_path):
     target = tmp_path / "out.nc"
     with ThreadPoolExecutor(1) as executor:
         other = gd.studies.ensemble(
             LOW, VARY, 8, of="min_gear_speed", seed=3, executor=executor, archive=target
         )
-    xr.testing.assert_identical(without_times(other), without_times(found))
+    xr.testing.assert_identical(without_times(other), without_times(ensemble))
     again = gd.open_archive(target)
-    xr.testing.assert_identical(without_times(again), without_times(found))
+    xr.testing.assert_identical(without_times(again), without_times(ensemble))
     assert again.gearidae.verdicts().equals(other.gearidae.verdicts())
     whole = gd.studies.ensemble(LOW, VARY, 8, of="min_gear_speed", seed=3, archive=target, resume=True)
     assert whole.attrs["date_created"] == other.attrs["date_created"]  # nothing has been run
@@ -220,26 +220,26 @@ def test_probability_of_sticking_is_the_share_of_members(stuck):
     assert float(bins.probability[1]) == float(stuck.sticks.values[inside.values].mean())
 
 
-def test_mixed_members_do_not_count_as_drawn(found):
-    assert int(gd.studies.sticking_probability(found).members) == 16
+def test_mixed_members_do_not_count_as_drawn(ensemble):
+    assert int(gd.studies.sticking_probability(ensemble).members) == 16
 
 
-def test_probabilities_that_cannot_be_had(found, stuck):
+def test_probabilities_that_cannot_be_had(ensemble, stuck):
     for ds, over, bins, key in (
         (LOW and gd.sweep(LOW, {"coating.sam_fraction": [1.0]}), None, None, "dataset"),
         (stuck, "drive.torque", None, "over"),
         (stuck, "coating.sam_fraction", 0, "bins"),
-        (found.assign(sticks=found.sticks * np.nan), None, None, "dataset"),
+        (ensemble.assign(sticks=ensemble.sticks * np.nan), None, None, "dataset"),
     ):
         with pytest.raises(gd.SceneError) as refused:
             gd.studies.sticking_probability(ds, over, bins=bins)
         assert refused.value.key == key
 
 
-def test_pictures(found, stuck):
-    ax = gd.plot.sobol_indices(found)
+def test_pictures(ensemble, stuck):
+    ax = gd.plot.sobol_indices(ensemble)
     assert [text.get_text() for text in ax.get_yticklabels()][-1] == str(
-        found.parameter.values[np.argmax(found.total_order.values)]
+        ensemble.parameter.values[np.argmax(ensemble.total_order.values)]
     )
     ax.figure.canvas.draw()
     ax = gd.plot.sticking_probability(stuck, bins=5)

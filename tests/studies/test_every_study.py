@@ -51,7 +51,7 @@ def test_interrupted_and_resumed_by_two_threads_it_ends_alike(product, tmp_path)
         with pytest.raises(gd.SceneError, match=r"was cut off.*--resume.*--overwrite"):
             STUDIES[kind](path)
     whole = STUDIES[kind](path, jobs=2, resume=True)
-    same = (without_times(one).drop_vars("time_to_take", errors="ignore") for one in (whole, ds))
+    same = (without_times(dataset).drop_vars("time_to_take", errors="ignore") for dataset in (whole, ds))
     xr.testing.assert_identical(*same)
     assert list(tmp_path.iterdir()) == [path]
 
@@ -72,11 +72,11 @@ def test_what_is_whole_is_neither_computed_again_nor_replaced(product, monkeypat
 
 def test_a_file_is_known_for_what_it_is(product):
     kind, path, ds = product
-    found, name = open_product(path)
+    opened_product, name = open_product(path)
     assert name == kind == kind_of(ds)
-    assert answer(found, kind) == answer(ds, kind)
+    assert answer(opened_product, kind) == answer(ds, kind)
     opened = gd.open(path)
-    assert opened.identical(found)
+    assert opened.identical(opened_product)
     assert opened.gearidae.kind == kind
     assert answer(ds, kind).sentence in repr(opened.gearidae)
     for row in repr(opened.gearidae).splitlines()[1:]:
@@ -88,16 +88,16 @@ def test_a_file_is_known_for_what_it_is(product):
 def test_a_file_holds_what_its_study_declares(product):
     """Dimensions and units of the columns, as the reference lists them."""
     kind, path, _ = product
-    found, _ = open_product(path)
+    opened, _ = open_product(path)
     columns = studies()[kind].columns
     assert columns
     for name, column in columns.items():
-        if name not in found.variables:
+        if name not in opened.variables:
             assert not column.required, name
             continue
-        assert len(found[name].dims) == len(column.dims), name
+        assert len(opened[name].dims) == len(column.dims), name
         if column.units and not column.units.startswith("{"):
-            assert found[name].attrs.get("units", "1") == column.units, name
+            assert opened[name].attrs.get("units", "1") == column.units, name
 
 
 def test_a_study_needs_neither_the_engine_nor_matplotlib_to_be_read():
@@ -116,16 +116,16 @@ def test_every_kind_is_tested_here():
 
 def test_terminal_report_and_json_give_the_same_answer(product, tmp_path, capsys):
     kind, path, ds = product
-    found = answer(ds, kind)
-    assert found.sentence.endswith(".")
+    reply = answer(ds, kind)
+    assert reply.sentence.endswith(".")
     assert main(["info", str(path)]) == 0
-    assert found.sentence in capsys.readouterr().out
+    assert reply.sentence in capsys.readouterr().out
     assert main(["info", str(path), "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
-    assert (told["kind"], told["answer"]) == (kind, found.sentence)
+    assert (told["kind"], told["answer"]) == (kind, reply.sentence)
     assert main(["report", str(path), "-o", str(tmp_path / "page.html")]) == 0
     page = (tmp_path / "page.html").read_text(encoding="utf-8")
-    assert f'<p class="headline">{html.escape(found.sentence)}</p>' in page
+    assert f'<p class="headline">{html.escape(reply.sentence)}</p>' in page
     assert page.count("<figure") >= 1
     assert main(["plot", str(path), "-o", str(tmp_path / "picture.png")]) == 0
     assert (tmp_path / "picture.png").stat().st_size > 5000

@@ -37,8 +37,8 @@ def test_it_is_the_pull_off_of_a_roller_of_the_reduced_radius():
     roller = {"radius": radius, "width": 2e-6, "mass": 1e-12, "speed": 1e-2, "height": 4e-8}
     scene = gd.Scene.from_dict({**surfaces, "roller": roller, "run": {"duration": 1e-6}})
     expected = gd.studies.pull_off(scene, 5, load=1e-5)
-    found = gd.contact.hub_adhesion(PRESET, 3e-6, 0.5e-6, 2e-6, load=1e-5, seeds=5)
-    np.testing.assert_allclose(found.pull_off, expected.pull_off, rtol=1e-12)
+    hub = gd.contact.hub_adhesion(PRESET, 3e-6, 0.5e-6, 2e-6, load=1e-5, seeds=5)
+    np.testing.assert_allclose(hub.pull_off, expected.pull_off, rtol=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -94,8 +94,8 @@ def test_hubs_of_a_couple_by_the_depth_of_their_tops():
     # half of the devices live longer where both joints do: of lognormal lives, the product of two normal tails
     both = optimize.brentq(lambda z: stats.norm.sf(z) * stats.norm.sf(z - 2.0) - 0.5, -3.0, 3.0)
     # 1.25 standard deviations over the root of 4000, four times
-    found = math.log2(ds.life_quantile.sel(quantile=0.5).item() / pinion)
-    assert found == pytest.approx(both, abs=4.0 * 1.25 / math.sqrt(4000))
+    doublings = math.log2(ds.life_quantile.sel(quantile=0.5).item() / pinion)
+    assert doublings == pytest.approx(both, abs=4.0 * 1.25 / math.sqrt(4000))
 
 
 def test_wrong_settings_are_named():

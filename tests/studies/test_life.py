@@ -25,24 +25,24 @@ def short():
 def test_exposures_of_a_window_are_those_of_its_cycles():
     """One cycle and then three: what four have added up to, less the first."""
     scene = window_scene(LOW, Cycles(1, 3), 4)
-    found, word = run_window(scene, Cycles(1, 3), "native")
+    window, word = run_window(scene, Cycles(1, 3), "native")
     assert word == "turns"
     whole, _ = run_window(window_scene(LOW, Cycles(0, 4), 4), Cycles(0, 4), "native")
     first, _ = run_window(window_scene(LOW, Cycles(0, 1), 4), Cycles(0, 1), "native")
     sums = [
-        np.array(each.extremes.exposures).reshape(2, 19, -1, 4)[:, :, :-1].sum()
-        for each in (found, whole, first)
+        np.array(solution.extremes.exposures).reshape(2, 19, -1, 4)[:, :, :-1].sum()
+        for solution in (window, whole, first)
     ]
     assert sums[0] == pytest.approx(sums[1] - sums[2], rel=1e-3)
-    assert found.extremes.mesh_exits == 4
+    assert window.extremes.mesh_exits == 4
 
 
 def test_a_window_with_friction_goes_on_over_all_its_parts():
     """Its first part ends where one pair pulls."""
     cycles = Cycles(1, 2)
     scene = LOW.replace({"coating.sam_fraction": 0.6, "contact.friction": 0.1})
-    found, word = run_window(window_scene(scene, cycles, 4), cycles, "native")
-    assert (word, found.extremes.mesh_exits) == ("turns", 3)
+    window, word = run_window(window_scene(scene, cycles, 4), cycles, "native")
+    assert (word, window.extremes.mesh_exits) == ("turns", 3)
 
 
 def test_a_window_goes_on_until_the_motion_is_steady():
@@ -50,10 +50,10 @@ def test_a_window_goes_on_until_the_motion_is_steady():
     scene = LOW.replace({"coating.sam_fraction": 0.66})
 
     def contacts(cycles):
-        found, word = run_window(window_scene(scene, cycles, 4), cycles, "native")
+        window, word = run_window(window_scene(scene, cycles, 4), cycles, "native")
         assert word == "turns"
-        table = np.array(found.extremes.exposures).reshape(2, 19, -1, 4)[0, :, :3]
-        return table.sum() / cycles.count, found.extremes.mesh_exits
+        table = np.array(window.extremes.exposures).reshape(2, 19, -1, 4)[0, :, :3]
+        return table.sum() / cycles.count, window.extremes.mesh_exits
 
     truth, _ = contacts(Cycles(80, 19))
     early, _ = contacts(Cycles(6, 19))
@@ -68,7 +68,7 @@ def test_blocks_that_fluctuate_are_averaged(monkeypatch):
     seen = []
 
     def blocks(*contacts):
-        seen[:] = [np.full((2, ROWS.per_tooth(rubs=False), 4), each) for each in contacts]
+        seen[:] = [np.full((2, ROWS.per_tooth(rubs=False), 4), number) for number in contacts]
         return steady_exposures(seen, 0.01)
 
     assert blocks(1.0) is None
@@ -157,21 +157,21 @@ def test_a_life_that_is_cut_off_in_its_last_cycles_is_resumed(tmp_path):
 
 def test_coverage_along_the_flank():
     scene = LOW.replace({"contact.bodies": "rigid"})
-    found = gd.studies.life(scene, LAW, **SHORT, resolved="place", fraction=0.68)
-    by_place = found.coverage_by_place.isel(side=0, tooth=0)
+    life = gd.studies.life(scene, LAW, **SHORT, resolved="place", fraction=0.68)
+    by_place = life.coverage_by_place.isel(side=0, tooth=0)
     assert by_place.dims == ("passages", "place")
     np.testing.assert_allclose(by_place[0], 0.7)
     assert float(by_place[-1].max() - by_place[-1].min()) > 1e-3  # it does not go evenly
-    np.testing.assert_allclose(by_place.mean("place"), found.coverage.isel(side=0), rtol=1e-12)
-    assert gd.plot.coverage_along_flank(found).get_xlabel()
+    np.testing.assert_allclose(by_place.mean("place"), life.coverage.isel(side=0), rtol=1e-12)
+    assert gd.plot.coverage_along_flank(life).get_xlabel()
 
 
 def test_both_sides_of_independent_ones():
     """The gear's flank has the larger curvature and four times as many teeth: it loses less in the same time."""
     scene = LOW.replace({"coating.pairing": "independent", "coating.sam_fraction": 0.9})
-    found = gd.studies.life(scene, LAW, **SHORT, fraction=0.89)
-    assert found.side.values.tolist() == ["pinion", "gear"]
-    lost = found.coverage[0] - found.coverage[-1]
+    life = gd.studies.life(scene, LAW, **SHORT, fraction=0.89)
+    assert life.side.values.tolist() == ["pinion", "gear"]
+    lost = life.coverage[0] - life.coverage[-1]
     assert 0.0 < float(lost.sel(side="gear")) < 0.5 * float(lost.sel(side="pinion"))
 
 
@@ -181,11 +181,11 @@ def test_sides_by_place_add_up_to_uniform_ones(resolved):
     changes = {"coating.pairing": "independent", "coating.pinion_fraction": 0.9, "coating.gear_fraction": 0.7}
     scene = LOW.replace({**changes, "contact.bodies": "rigid"})
     losses = []
-    for each in ("uniform", resolved):
-        coverage = coverage_of(scene, each, 4)
+    for resolution in ("uniform", resolved):
+        coverage = coverage_of(scene, resolution, 4)
         window = window_scene(scene, Cycles(0, 2), 4).replace(coverage.changes(coverage.start))
-        found, _ = run_window(window, Cycles(0, 2), "native")
-        rate = LAW.rate(coverage.start, coverage.exposure(window, found, 2, coverage.start))
+        solution, _ = run_window(window, Cycles(0, 2), "native")
+        rate = LAW.rate(coverage.start, coverage.exposure(window, solution, 2, coverage.start))
         areas = (flank_areas(window), gear_flank_areas(window))
         assert all(np.isfinite(rate))
         losses.append(
@@ -254,12 +254,12 @@ def test_scenes_are_checked():
 def test_signals_along_a_life_follow_its_coverage(short):
     """A sensor with some noise, and a map none of whose fractions is that of a state but the first."""
     chart = gd.studies.coating_map(LOW, [0.74, 0.72, 0.7, 0.68, 0.66, 0.64, 0.62])
-    found = gd.studies.assess_life(short, chart, noise=0.002)
-    assert set(found.assessed_verdict.values) == {"clear"}
-    truth = found.coverage.isel(side=0)
-    assert (found.assessed_low <= truth).all()
-    assert (truth <= found.assessed_high).all()
-    np.testing.assert_allclose(found.assessed_coverage, truth, rtol=0, atol=0.004)  # as in the closed loop
-    assert len(gd.plot.life(found).containers) == 1
+    assessed = gd.studies.assess_life(short, chart, noise=0.002)
+    assert set(assessed.assessed_verdict.values) == {"clear"}
+    truth = assessed.coverage.isel(side=0)
+    assert (assessed.assessed_low <= truth).all()
+    assert (truth <= assessed.assessed_high).all()
+    np.testing.assert_allclose(assessed.assessed_coverage, truth, rtol=0, atol=0.004)  # as in the closed loop
+    assert len(gd.plot.life(assessed).containers) == 1
     with pytest.raises(gd.SceneError, match="noise"):
         gd.studies.assess_life(short, chart, noise=-1.0)

@@ -19,10 +19,10 @@ def test_a_life_of_independent_sides():
     brute = brute_force(scene, law, 133, "uniform")
     assert not brute.sticks
     settings = {"passages": 7.0, "cycles": 3, "settle": 6, "starts": 1, "frequency": False, "jobs": 1}
-    found = gd.studies.life(scene, law, **settings)
-    assert found.attrs["mesh_cycles_direct"] < 100
-    seen = compared(scene, "uniform", found, brute)
-    lost = found.coverage[0] - found.coverage[-1]
+    life = gd.studies.life(scene, law, **settings)
+    assert life.attrs["mesh_cycles_direct"] < 100
+    seen = compared(scene, "uniform", life, brute)
+    lost = life.coverage[0] - life.coverage[-1]
     assert float(lost.min()) > 0.01
     # brute force begins with the start of the scene, which wears less: 0.0015 of 0.11
     assert seen.place < 3e-3
@@ -42,9 +42,9 @@ def test_rates_are_what_a_turn_costs(resolved, pairing):
     coverage = coverage_of(scene, resolved, PLACES)
     cycles = Cycles(19, 19)
     window = window_scene(scene, cycles, PLACES).replace(coverage.changes(coverage.start))
-    found, word = run_window(window, cycles, "native")
+    solution, word = run_window(window, cycles, "native")
     assert word == "turns"
-    rate = law.rate(coverage.start, coverage.exposure(window, found, 19, coverage.start))
+    rate = law.rate(coverage.start, coverage.exposure(window, solution, 19, coverage.start))
     lost = turn < 0.0  # in the other places asperities have joined before: none join anew
     assert lost.sum() >= len(turn) // 4
     assert (rate[lost] < 0.0).all()

@@ -14,17 +14,15 @@ VARY = {"drive.torque": "uniform(4e-18, 5e-18)"}
 
 def test_a_member_is_the_life_of_its_scene(tmp_path):
     path = tmp_path / "lives.nc"
-    found = gd.studies.lives(LOW, LAW, VARY, 2, seed=1, archive=path, jobs=1, **SHORT)
-    assert found.torque.dims == ("member",)
-    assert set(found.ending.values) == {"coverage"}
-    assert np.isnan(found.passages_to_sticking).all()
-    np.testing.assert_allclose(found.final_coverage, SHORT["fraction"], rtol=1e-6)
-    one = gd.studies.life(
-        LOW.replace({"drive.torque": float(found.torque[1])}), LAW, frequency=False, **SHORT
-    )
-    assert float(found.passages_turning[1]) == float(one.passages[-1])
+    ds = gd.studies.lives(LOW, LAW, VARY, 2, seed=1, archive=path, jobs=1, **SHORT)
+    assert ds.torque.dims == ("member",)
+    assert set(ds.ending.values) == {"coverage"}
+    assert np.isnan(ds.passages_to_sticking).all()
+    np.testing.assert_allclose(ds.final_coverage, SHORT["fraction"], rtol=1e-6)
+    life = gd.studies.life(LOW.replace({"drive.torque": float(ds.torque[1])}), LAW, frequency=False, **SHORT)
+    assert float(ds.passages_turning[1]) == float(life.passages[-1])
     with xr.open_dataset(path) as kept:
-        xr.testing.assert_equal(kept.load().drop_vars("message"), found.drop_vars("message"))
+        xr.testing.assert_equal(kept.load().drop_vars("message"), ds.drop_vars("message"))
 
 
 def test_parameters_of_the_law_are_drawn(tmp_path):
@@ -32,15 +30,15 @@ def test_parameters_of_the_law_are_drawn(tmp_path):
     hot = gd.wear.Arrhenius(LAW, activation_energy="0.1 eV", activation_volume=0.0, temperature="300 K")
     vary = {"law.energy": "uniform(1e-6, 3e-6)", "law.temperature": "uniform(280 K, 400 K)"}
     path = tmp_path / "lives.nc"
-    found = gd.studies.lives(LOW, hot, vary, 2, archive=path, jobs=1, **SHORT)
-    assert found.energy.attrs == {"units": "J/m^2", "long_name": "law.energy"}
+    ds = gd.studies.lives(LOW, hot, vary, 2, archive=path, jobs=1, **SHORT)
+    assert ds.energy.attrs == {"units": "J/m^2", "long_name": "law.energy"}
     factor = np.exp(
-        -gd.wear.Arrhenius(LAW, "0.1 eV", 0.0, 1.0).activation_energy / (1.380649e-23 * found.temperature)
+        -gd.wear.Arrhenius(LAW, "0.1 eV", 0.0, 1.0).activation_energy / (1.380649e-23 * ds.temperature)
     )
-    scaled = found.passages_turning / found.energy * factor
+    scaled = ds.passages_turning / ds.energy * factor
     np.testing.assert_allclose(scaled, scaled[0], rtol=1e-4)  # last digits of the states
-    assert abs(float(found.energy[1] / found.energy[0]) - 1.0) > 0.1
-    xr.testing.assert_equal(gd.studies.open_lives(path).drop_vars("message"), found.drop_vars("message"))
+    assert abs(float(ds.energy[1] / ds.energy[0]) - 1.0) > 0.1
+    xr.testing.assert_equal(gd.studies.open_lives(path).drop_vars("message"), ds.drop_vars("message"))
 
 
 @pytest.mark.parametrize("jobs", [1, 2])
@@ -95,14 +93,14 @@ def known():
 
 def test_the_share_that_still_turns(known):
     """Kaplan and Meier: 3/4 of four, 2/3 of these three, none of the one that is left."""
-    found = gd.studies.surviving_share(known)
-    np.testing.assert_array_equal(found.passages, [0.0, 1.0, 2.0, 3.0])
-    np.testing.assert_allclose(found.share, [1.0, 0.75, 0.5, 0.0])
-    np.testing.assert_array_equal(found.followed, [4, 4, 3, 1])
+    surviving = gd.studies.surviving_share(known)
+    np.testing.assert_array_equal(surviving.passages, [0.0, 1.0, 2.0, 3.0])
+    np.testing.assert_allclose(surviving.share, [1.0, 0.75, 0.5, 0.0])
+    np.testing.assert_array_equal(surviving.followed, [4, 4, 3, 1])
     # Greenwood: var(log S) = 1/(4*3) + 1/(3*2) = 1/4 at 2, divided by log(S)^2 for log(-log S)
     spread = 1.959964 * 0.5 / np.log(0.5)
     expected = sorted(0.5 ** np.exp([spread, -spread]))
-    np.testing.assert_allclose([found.low[2], found.high[2]], expected, rtol=1e-6)
+    np.testing.assert_allclose([surviving.low[2], surviving.high[2]], expected, rtol=1e-6)
     none = gd.studies.surviving_share(known.isel(member=[3]))
     assert none.share.values.tolist() == [1.0]
 

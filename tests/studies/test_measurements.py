@@ -64,15 +64,17 @@ def decades(law, spread=0.0):
     """
     z = np.linspace(-6.0, 6.0, 61)
     weight, rates = np.exp(-0.5 * z**2) / np.exp(-0.5 * z**2).sum(), np.exp(spread * z)
-    one = np.ones_like(rates)
-    exposure = Exposure(rates, rates, rates, one)
+    ones = np.ones_like(rates)
+    exposure = Exposure(rates, rates, rates, ones)
 
     def change(logarithm, fraction):  # d/d ln N
         return math.exp(logarithm) * law.rate(np.clip(fraction, 0.0, 1.0), exposure)
 
     times = np.linspace(math.log(1e-6), math.log(1e5), 2201)
-    found = solve_ivp(change, (times[0], times[-1]), one, t_eval=times, method="LSODA", rtol=1e-8, atol=1e-10)
-    bare = 1.0 - weight @ np.clip(found.y, 0.0, 1.0)
+    solution = solve_ivp(
+        change, (times[0], times[-1]), ones, t_eval=times, method="LSODA", rtol=1e-8, atol=1e-10
+    )
+    bare = 1.0 - weight @ np.clip(solution.y, 0.0, 1.0)
     onset = np.interp(0.05, bare, times)
     return np.diff(np.interp(onset + math.log(10.0) * np.arange(4), times, bare))
 

@@ -13,7 +13,7 @@ LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 2e-3, "run.
 def files(tmp_path_factory):
     """A run, a sweep, a study that holds runs, and one that holds none."""
     folder = tmp_path_factory.mktemp("files")
-    found = {
+    products = {
         "run": gd.simulate(LOW, archive=folder / "run.nc"),
         "sweep": gd.sweep(LOW, {"drive.torque": [4e-18, 5e-18]}, archive=folder / "sweep.nc"),
         "ensemble": gd.studies.ensemble(
@@ -23,16 +23,16 @@ def files(tmp_path_factory):
             LOW, between=(0.4, 0.7), exits=5, width=0.2, archive=folder / "sticking_threshold.nc"
         ),
     }
-    return folder, found
+    return folder, products
 
 
 @pytest.mark.parametrize("name", ["run", "sweep", "ensemble", "sticking_threshold"])
 def test_every_file_is_opened_as_what_it_is(files, name):
-    folder, found = files
+    folder, products = files
     opened = gd.open(folder / f"{name}.nc")
-    assert opened.drop_attrs().identical(found[name].drop_attrs())
+    assert opened.drop_attrs().identical(products[name].drop_attrs())
     kind = "runs" if name in ("run", "sweep") else name
-    assert opened.gearidae.kind == found[name].gearidae.kind == kind
+    assert opened.gearidae.kind == products[name].gearidae.kind == kind
 
 
 def test_readers_of_one_kind_name_it(files):

@@ -24,8 +24,8 @@ def listed(heights, **changes):
 
 
 def pull_off(scene, load):
-    (found,) = gd.studies.pull_off(scene, [0], load=load).pull_off.values
-    return found
+    (force,) = gd.studies.pull_off(scene, [0], load=load).pull_off.values
+    return force
 
 
 @pytest.mark.parametrize(("law", "factor"), [("jkr", 1.5), ("dmt", 2.0)])
@@ -124,9 +124,9 @@ def test_the_command_keeps_what_it_says(tmp_path, capsys):
     assert main(["pull-off", "teodorescu2009", "--seeds", "20", "--load", "1 uN", "-o", str(path)]) == 0
     ds, kind = open_product(path)
     assert (kind, ds.sizes["seed"], ds.attrs["load"]) == ("pull_off", 20, 1e-6)
-    found = answer(ds, kind)
+    reply = answer(ds, kind)
     low, middle, high = np.quantile(ds.pull_off.values, (0.1, 0.5, 0.9))
-    assert f"median of 20; 80 % between {low * 1e9:.3g} nN and {high * 1e9:.3g} nN" in found.sentence
+    assert f"median of 20; 80 % between {low * 1e9:.3g} nN and {high * 1e9:.3g} nN" in reply.sentence
     assert f"parts at {middle * 1e9:.3g} nN" in capsys.readouterr().out
     ax = gd.plot.pull_off(ds)
     assert ax.get_ylim() == (0.0, 1.0)

@@ -39,9 +39,9 @@ def test_a_starting_torque_needs_one_load_and_replaces_the_drive():
     driven = LOW.replace({"drive.torque": 0.0, **SCHEDULES["drive.schedule"]})
     with pytest.raises(gd.SceneError, match=r"--lowest.*drive\.schedule"):
         gd.studies.starting_torque(driven, [1.0], simulated=False)
-    found = gd.studies.starting_torque(driven, [1.0], simulated=False, lowest=1e-21)
+    torques = gd.studies.starting_torque(driven, [1.0], simulated=False, lowest=1e-21)
     alone = gd.studies.starting_torque(LOW, [1.0], simulated=False, lowest=1e-21)
-    assert float(found.static_torque[0]) == float(alone.static_torque[0])
+    assert float(torques.static_torque[0]) == float(alone.static_torque[0])
 
 
 @pytest.mark.parametrize("study", [threshold, life, gd.studies.starting_torque, gd.studies.coating_map])

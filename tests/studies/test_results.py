@@ -83,8 +83,8 @@ def test_an_archive_tells_the_same(ds, tmp_path):
     gd.save(ds, tmp_path / "sweep.nc")
     kept = gd.open_archive(tmp_path / "sweep.nc")
     assert kept.identical(ds)
-    one = {"sam_fraction": 0.5, "torque": 4e-18}
-    assert kept.gearidae.run(**one).identical(ds.gearidae.run(**one))
+    labels = {"sam_fraction": 0.5, "torque": 4e-18}
+    assert kept.gearidae.run(**labels).identical(ds.gearidae.run(**labels))
 
 
 def test_chunked_data_tell_the_same(ds):
@@ -216,14 +216,15 @@ def test_labels_may_be_written_as_in_a_scene(ds):
 
 def test_the_accessor_lists_what_works(ds):
     """What it lists can be called as it stands there."""
-    for each in (ds, ds.gearidae.run(sam_fraction=0.5, torque=5e-18), ds.sel(torque=5e-18)):
-        title, *rows = repr(each.gearidae).splitlines()
+    for dataset in (ds, ds.gearidae.run(sam_fraction=0.5, torque=5e-18), ds.sel(torque=5e-18)):
+        title, *rows = repr(dataset.gearidae).splitlines()
         assert title.startswith("<")
         assert len(rows) > 5
         for row in rows:
             call = row.split("  ")[1]
             value = eval(
-                call if call.startswith("gearidae.") else f"ds.gearidae.{call}", {"ds": each, "gearidae": gd}
+                call if call.startswith("gearidae.") else f"ds.gearidae.{call}",
+                {"ds": dataset, "gearidae": gd},
             )
             assert value is not None, call
     assert "6 runs of teodorescu2009_low_speed along sam_fraction (1, 0.5), torque" in repr(ds.gearidae)

@@ -21,31 +21,31 @@ SEEDS = {"contact.seed": "seeds"}
 
 
 @pytest.fixture(scope="module")
-def found():
+def specimens():
     return gd.studies.ensemble(GEARS, SEEDS, 6)
 
 
-def test_seeds_are_numbered_from_the_scene_s_own_on(found):
-    assert found.seed.values.tolist() == [5, 6, 7, 8, 9, 10]
+def test_seeds_are_numbered_from_the_scene_s_own_on(specimens):
+    assert specimens.seed.values.tolist() == [5, 6, 7, 8, 9, 10]
     alone = gd.simulate(GEARS.replace({"contact.seed": 8}))
-    one = found.isel(member=3)
+    specimen = specimens.isel(member=3)
     for name in ("max_gear_speed", "largest_mesh_force", "asperity_onsets"):
-        assert float(one[name]) == float(alone[name])
-    assert float(one.adhesion_loss) == alone.gearidae.energy_balance["adhesion_loss"]
-    assert np.unique(found.max_gear_speed).size == 6
+        assert float(specimen[name]) == float(alone[name])
+    assert float(specimen.adhesion_loss) == alone.gearidae.energy_balance["adhesion_loss"]
+    assert np.unique(specimens.max_gear_speed).size == 6
 
 
-def test_processes_do_not_matter(found):
+def test_processes_do_not_matter(specimens):
     with ProcessPoolExecutor(1) as executor:
         other = gd.studies.ensemble(GEARS, SEEDS, 6, executor=executor)
-    xr.testing.assert_identical(without_times(other), without_times(found))
+    xr.testing.assert_identical(without_times(other), without_times(specimens))
 
 
-def test_means_have_standard_errors(found):
-    rows = {name: (value, remark) for name, value, remark in answer(found, "ensemble").rows}
+def test_means_have_standard_errors(specimens):
+    rows = {name: (value, remark) for name, value, remark in answer(specimens, "ensemble").rows}
     value, remark = rows["settled gear speed"]
     mean, error = (float(part) for part in value.removesuffix(" rad/s").split(" +- "))
-    speeds = found.settled_gear_speed.values
+    speeds = specimens.settled_gear_speed.values
     scatter = np.std(speeds, ddof=1)
     assert error == pytest.approx(scatter / math.sqrt(6.0), rel=0.05)
     assert mean == pytest.approx(speeds.mean(), rel=0, abs=0.05 * error)
@@ -113,14 +113,14 @@ def test_probability_of_sticking_over_seeds_and_coverage():
     assert ensemble.sticks.sum() == stuck[1]
 
 
-def test_a_picture_has_the_mean_of_the_specimens(found):
-    ax = gd.plot.specimens(found)
+def test_a_picture_has_the_mean_of_the_specimens(specimens):
+    ax = gd.plot.specimens(specimens)
     ax.figure.canvas.draw()
     steps, mean = ax.get_lines()[:2]
-    assert steps.get_xdata().tolist() == sorted(found.settled_gear_speed.values)
-    assert mean.get_xdata()[0] == pytest.approx(float(found.settled_gear_speed.mean()), rel=1e-14)
+    assert steps.get_xdata().tolist() == sorted(specimens.settled_gear_speed.values)
+    assert mean.get_xdata()[0] == pytest.approx(float(specimens.settled_gear_speed.mean()), rel=1e-14)
     with pytest.raises(gd.SceneError, match="figure"):
-        gd.plot.specimens(found, of="verdict_words")
+        gd.plot.specimens(specimens, of="verdict_words")
 
 
 def test_one_run_is_called_one_specimen(tmp_path, capsys):

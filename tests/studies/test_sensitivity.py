@@ -43,7 +43,7 @@ def test_a_linear_and_a_curved_dependence_in_flight():
 def test_the_trap_of_a_small_step():
     """In a ringing contact at rtol 1e-6 a relative step of 1e-7 finds noise; the study does not."""
     scene = LOW.replace({"run.duration": 0.004, "run.samples": 2, "coating.sam_fraction": 0.6})
-    found = gd.studies.sensitivity(scene, "drive.torque", of=last("gear_speed"))
+    derivative = gd.studies.sensitivity(scene, "drive.torque", of=last("gear_speed"))
     torque = scene.drive.torque
     tight = scene.replace({"run.rtol": 1e-11})
     values = [
@@ -51,14 +51,14 @@ def test_the_trap_of_a_small_step():
         for s in (1, -1)
     ]
     reference = (values[0] - values[1]) / (2e-4 * torque)
-    assert abs(found.value - reference) <= found.uncertainty
-    assert found.uncertainty <= 0.05 * abs(reference)
+    assert abs(derivative.value - reference) <= derivative.uncertainty
+    assert derivative.uncertainty <= 0.05 * abs(reference)
     naive = [
         float(gd.simulate(scene.replace({"drive.torque": torque * (1 + s * 1e-7)})).gear_speed[-1])
         for s in np.linspace(-1, 1, 5)
     ]
     slopes = np.diff(naive) / (0.5e-7 * torque)
-    assert np.abs(slopes - reference).max() > 10 * found.uncertainty
+    assert np.abs(slopes - reference).max() > 10 * derivative.uncertainty
 
 
 def test_a_jump_is_told_by_its_uncertainty():
@@ -68,8 +68,8 @@ def test_a_jump_is_told_by_its_uncertainty():
     def step(ds):
         return float(float(ds.pinion_speed[-1]) > 4 * W0 + torque * T / I1)
 
-    found = gd.studies.sensitivity(FLIGHT, "drive.torque", of=step)
-    assert found.uncertainty >= 0.25 * abs(found.value)
+    derivative = gd.studies.sensitivity(FLIGHT, "drive.torque", of=step)
+    assert derivative.uncertainty >= 0.25 * abs(derivative.value)
 
 
 @pytest.mark.parametrize(

@@ -66,8 +66,8 @@ def test_two_asperities_hold_a_gear_as_statics_says():
     at = starting_ramp.laid(scene, 3)
     wanted = _largest_static_torque(scene, phase)
     scale = float(starting_ramp.run_from_rest(starting_ramp.pilot(at), "auto")[1])
-    found = float(starting_ramp.run_from_rest(starting_ramp.ramp(at, scale, 0), "auto")[1])
-    assert found == pytest.approx(wanted, rel=0.01, abs=0)
+    torque = float(starting_ramp.run_from_rest(starting_ramp.ramp(at, scale, 0), "auto")[1])
+    assert torque == pytest.approx(wanted, rel=0.01, abs=0)
     assert scale == pytest.approx(wanted, rel=0.1, abs=0)
     for share, turns in ((0.5, False), (1.2, True)):
         word = starting_ramp.run_from_rest(starting_ramp.constant(at, scale, share * wanted), "auto")[1]
@@ -107,8 +107,8 @@ def test_whole_pitches_choose_the_tooth_and_nothing_else():
 
 def test_quantiles_count_gears_that_did_not_start():
     np.testing.assert_allclose(_quantiles(np.arange(11.0)), [1.0, 5.0, 9.0], rtol=1e-15)
-    found = _quantiles(np.array([4.0, math.inf, 1.0, 2.0, math.inf]))
-    assert found.tolist() == [pytest.approx(1.4), 4.0, math.inf]
+    quantiles = _quantiles(np.array([4.0, math.inf, 1.0, 2.0, math.inf]))
+    assert quantiles.tolist() == [pytest.approx(1.4), 4.0, math.inf]
 
 
 def test_a_gear_that_cannot_be_followed_is_left_out_and_named(caplog):
@@ -126,19 +126,19 @@ def test_a_gear_that_cannot_be_followed_is_left_out_and_named(caplog):
 
 
 @pytest.fixture(scope="module")
-def found():
+def starting_torques():
     return gd.studies.starting_torque(BARE, **FEW)
 
 
-def test_each_gear_is_found_alone(found):
-    assert found.starting_torque.dims == ("sam_fraction", "seed")
+def test_each_gear_is_found_alone(starting_torques):
+    assert starting_torques.starting_torque.dims == ("sam_fraction", "seed")
     at = starting_ramp.laid(BARE, 1)
-    assert float(found.place[1]) == at.initial.mesh_phase
-    scale, (rate,) = found.ramp_end.item() / 8.0, found.rate.values
+    assert float(starting_torques.place[1]) == at.initial.mesh_phase
+    scale, (rate,) = starting_torques.ramp_end.item() / 8.0, starting_torques.rate.values
     assert rate == pytest.approx(
         starting_ramp.ramp_rate(starting_ramp.pitch_of(at), scale, 1), rel=1e-12, abs=0
     )
-    assert found.median_change.item() < 0.1
+    assert starting_torques.median_change.item() < 0.1
 
 
 def test_bare_teeth_hold_more_and_dry_resistance_adds_to_them():
@@ -174,8 +174,8 @@ def test_what_a_population_does_not_take_is_named():
         ({"seeds": 0}, "seeds"),
         ({"sam_fraction": "all"}, "sam_fraction"),
     )
-    for given, name in cases:
+    for settings, name in cases:
         with pytest.raises(gd.SceneError, match=name):
-            gd.studies.starting_torque(BARE, **given)
+            gd.studies.starting_torque(BARE, **settings)
     with pytest.raises(gd.SceneError, match="discrete"):
         gd.studies.starting_torque(gd.preset("teodorescu2009"), seeds=3)

@@ -102,10 +102,10 @@ def test_dry_resistance_adds_to_the_static_torque():
 
 
 def test_simulated_torque_turns_and_a_smaller_one_sticks():
-    found = starting_torque(SCENE, [1.0, 0.5], impacts=1, tolerance=0.5)
-    whole, worn = found.sel(sam_fraction=1.0), found.sel(sam_fraction=0.5)
+    torques = starting_torque(SCENE, [1.0, 0.5], impacts=1, tolerance=0.5)
+    whole, worn = torques.sel(sam_fraction=1.0), torques.sel(sam_fraction=0.5)
     assert float(whole.simulated_torque) == float(whole.static_torque) == 0.0
-    assert found.simulated_torque.attrs["units"] == "N m"
+    assert torques.simulated_torque.attrs["units"] == "N m"
     turns, sticks = float(worn.simulated_torque), float(worn.simulated_stuck)
     assert sticks < turns <= 1.5 * sticks
     pitch = 2.0 * math.pi / SCENE.gears.gear_teeth

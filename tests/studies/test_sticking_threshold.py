@@ -22,27 +22,27 @@ WIDTH = 0.0125
 
 
 @pytest.fixture(scope="module")
-def found():
+def brackets():
     return gd.studies.sticking_threshold(LOW, between=BETWEEN, exits=5, width=WIDTH)
 
 
-def test_runs_of_their_own_stick_and_turn_at_the_bracket(found):
+def test_runs_of_their_own_stick_and_turn_at_the_bracket(brackets):
     """Six exits take 0.33 s at the steady speed of 1.5 rad/s: a run at either end says what the bracket says."""
-    one = found.sel(exits=5)
-    assert 0.0 < float(one.passes - one.sticks) <= WIDTH
-    assert float(one.limit) == pytest.approx(0.5 * float(one.sticks + one.passes), rel=1e-15)
+    bracket = brackets.sel(exits=5)
+    assert 0.0 < float(bracket.passes - bracket.sticks) <= WIDTH
+    assert float(bracket.limit) == pytest.approx(0.5 * float(bracket.sticks + bracket.passes), rel=1e-15)
     pitch = 2.0 * math.pi / (76 * 1.5)
     for name, passed in (("sticks", False), ("passes", True)):
-        scene = LOW.replace({"coating.sam_fraction": float(one[name]), "run.duration": 9.0 * pitch})
+        scene = LOW.replace({"coating.sam_fraction": float(bracket[name]), "run.duration": 9.0 * pitch})
         (outcome,) = outcomes(gd.simulate(scene))
         assert (outcome.mesh_exits >= 5) is passed
 
 
-def test_a_run_answers_for_all_numbers_of_exits(found):
-    assert found.exits.values.tolist() == [1, 2, 5]
-    assert np.isnan(found.limit.values[:2]).all()  # none sticks at the first two
+def test_a_run_answers_for_all_numbers_of_exits(brackets):
+    assert brackets.exits.values.tolist() == [1, 2, 5]
+    assert np.isnan(brackets.limit.values[:2]).all()  # none sticks at the first two
     later = gd.studies.sticking_threshold(LOW, between=(0.6, 0.4), exits=10, width=WIDTH)
-    assert float(later.limit.sel(exits=5)) == pytest.approx(float(found.limit[-1]), abs=WIDTH)
+    assert float(later.limit.sel(exits=5)) == pytest.approx(float(brackets.limit[-1]), abs=WIDTH)
     assert (
         float(later.limit[-1]) > float(later.limit.sel(exits=5)) + 0.05
     )  # the longer one waits the more sticks
@@ -61,23 +61,23 @@ def failing(monkeypatch, module, name, fails):
     )
 
 
-def test_a_run_that_fails_is_left_out_and_named(found, monkeypatch, caplog):
+def test_a_run_that_fails_is_left_out_and_named(brackets, monkeypatch, caplog):
     """The first point between the ends fails: the bracket is found all the same, beside it."""
     failing(monkeypatch, threshold_run, "solve_to_end", lambda scene: scene.coating.sam_fraction == 0.45)
     other = gd.studies.sticking_threshold(LOW, between=BETWEEN, exits=5, width=WIDTH)
     assert "one run is left out: the run at 0.45 could not be finished: of a test" in caplog.text
     assert other.attrs["left_out"] == 1
     assert 0.45 not in other.value.values
-    one = other.sel(exits=5)
-    assert float(one.sticks) <= float(one.passes)
-    assert float(one.limit) == pytest.approx(float(found.limit.sel(exits=5)), abs=0.05)
+    bracket = other.sel(exits=5)
+    assert float(bracket.sticks) <= float(bracket.passes)
+    assert float(bracket.limit) == pytest.approx(float(brackets.limit.sel(exits=5)), abs=0.05)
     assert ("runs", str(other.sizes["run"]), "1 more could not be finished") in tuple(threshold._rows(other))
 
 
 def test_a_bracket_whose_inner_runs_all_fail_stays_as_it_is(monkeypatch):
     failing(monkeypatch, threshold_run, "solve_to_end", lambda scene: 0.4 < scene.coating.sam_fraction < 0.6)
-    one = gd.studies.sticking_threshold(LOW, between=BETWEEN, exits=5, width=0.01).sel(exits=5)
-    assert (float(one.sticks), float(one.passes)) == BETWEEN
+    bracket = gd.studies.sticking_threshold(LOW, between=BETWEEN, exits=5, width=0.01).sel(exits=5)
+    assert (float(bracket.sticks), float(bracket.passes)) == BETWEEN
 
 
 def test_an_end_that_fails_is_an_error(monkeypatch):
@@ -111,7 +111,7 @@ def test_scenes_without_a_threshold_are_refused():
         door(LOW.replace({"drive.schedule": [[0.0, 0.0], [0.1, 1e-18]]}), between=BETWEEN)
 
 
-def test_the_command_prints_the_brackets(found, tmp_path, monkeypatch, capsys):
+def test_the_command_prints_the_brackets(brackets, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(threshold, "_WIDTH", 0.25)
     command = [
@@ -126,7 +126,7 @@ def test_the_command_prints_the_brackets(found, tmp_path, monkeypatch, capsys):
     told = capsys.readouterr().out
     with xr.open_dataset("teodorescu2009_low_speed_threshold.nc") as kept:
         limit = float(kept.limit[-1])
-    assert limit == pytest.approx(float(found.limit[-1]), abs=0.05)
+    assert limit == pytest.approx(float(brackets.limit[-1]), abs=0.05)
     assert "within 5 mesh exits" in told
     assert f"{limit:.4g}" in told
     assert "no run has stuck so early" in told

@@ -38,9 +38,9 @@ def test_gaps_and_contacts_are_the_recorded_ones(name, request):
         recorded = ds.isel(time=at)
         assert state.time == recorded.time
         for flank, gap in ((Flank.DRIVE, recorded.drive_gap), (Flank.COAST, recorded.coast_gap)):
-            smallest = min(one.gap for one in state.contacts if one.flank == flank)
+            smallest = min(contact.gap for contact in state.contacts if contact.flank == flank)
             assert smallest == gap
-        touching = sum(one.state != ContactState.OPEN for one in state.contacts)
+        touching = sum(contact.state != ContactState.OPEN for contact in state.contacts)
         assert touching == recorded.pairs_in_contact
 
 
@@ -67,28 +67,29 @@ def test_a_look_at_every_sample_leaves_the_run_as_it_is(kind, backend):
     for name in ("transmission_error", "gear_speed", "mesh_force"):
         np.testing.assert_array_equal([getattr(state, name) for state in states], ds[name])
     np.testing.assert_array_equal([state.time for state in states], ds.time)
-    sums = [sum(one.force * (1 - 2 * one.flank) for one in state.contacts) for state in states]
-    largest = [max((abs(one.force) for one in state.contacts), default=0.0) for state in states]
+    sums = [sum(contact.force * (1 - 2 * contact.flank) for contact in state.contacts) for state in states]
+    largest = [max((abs(contact.force) for contact in state.contacts), default=0.0) for state in states]
     # a sum of a few numbers, rounded in two orders
     assert (np.abs(np.array(sums) - ds.mesh_force) <= 1e-14 * np.array(largest)).all()
     assert np.abs(ds.mesh_force).max() > 0.0
-    touching = [sum(one.state != ContactState.OPEN for one in state.contacts) for state in states]
+    touching = [sum(contact.state != ContactState.OPEN for contact in state.contacts) for state in states]
     np.testing.assert_array_equal(touching, ds.pairs_in_contact)
 
 
 def test_force_of_a_pair_is_that_of_the_contact_law(slow):
     compared = 0
     for state in tooth_contacts(slow, [0.004, 0.05, 0.0773]):
-        for one in state.contacts:
-            if one.flank != Flank.DRIVE:
+        for contact in state.contacts:
+            if contact.flank != Flank.DRIVE:
                 continue
             parts = ((0.5, WORN.surface, "bare"), (0.5, WORN.coated_surface, "coated"))
             law = sum(
-                share * line_force(one.gap, one.gap - one.joined[part], one.radius, 2e-6, surface)
+                share
+                * line_force(contact.gap, contact.gap - contact.joined[part], contact.radius, 2e-6, surface)
                 for share, surface, part in parts
             )
             # the tables' own error and the cancellation of pushing and pulling asperities
-            assert one.force == pytest.approx(float(law), rel=1e-6, abs=0.0)
+            assert contact.force == pytest.approx(float(law), rel=1e-6, abs=0.0)
             compared += 1
     assert compared >= 4
 
@@ -114,9 +115,11 @@ def test_states_follow_the_events(slow):
             if kind == EventKind.FULL_STRETCH and sample < after:
                 asked.append((sample, pair))
     for (_, pair), state in zip(asked, tooth_contacts(slow, [time for time, _ in asked]), strict=True):
-        (one,) = (one for one in state.contacts if (one.pair, one.flank) == (pair, Flank.DRIVE))
-        if one.state != ContactState.OPEN:
-            assert one.state == ContactState.FULLY_STRETCHED
+        (contact,) = (
+            contact for contact in state.contacts if (contact.pair, contact.flank) == (pair, Flank.DRIVE)
+        )
+        if contact.state != ContactState.OPEN:
+            assert contact.state == ContactState.FULLY_STRETCHED
             checked += 1
     assert checked > 5
 
@@ -165,7 +168,9 @@ def test_runs_that_go_on_from_others(tmp_path):
     np.testing.assert_array_equal([state.mesh_force for state in states], chain.mesh_force)
     alone = [*tooth_contacts(first, first.time.values), *tooth_contacts(second, second.time.values)[1:]]
     assert states[: len(alone)] == alone
-    assert {one.pair for one in states[-1].contacts} - {one.pair for one in states[0].contacts}
+    assert {contact.pair for contact in states[-1].contacts} - {
+        contact.pair for contact in states[0].contacts
+    }
     older = second.copy()
     del older.attrs["parent"]
     with pytest.raises(gd.SceneError, match="holds neither scene nor end of the run that it goes on from"):
@@ -181,7 +186,7 @@ def test_static_error_is_part_of_the_recorded_motion():
     ds = gd.simulate(scene, t_end=0.02)
     states = tooth_contacts(ds, np.linspace(0.0, 0.02, 50))
     for state in states:
-        forces = sum(one.force * (1 - 2 * one.flank) for one in state.contacts)
+        forces = sum(contact.force * (1 - 2 * contact.flank) for contact in state.contacts)
         assert forces == pytest.approx(state.mesh_force, rel=1e-9, abs=0.0)
 
 

@@ -23,20 +23,20 @@ def test_places_heights_and_radii_of_an_egg_box():
     """Maxima of cos(pi (2 n + 1) x / L) products lie at whole waves, half a point of the grid from its middle."""
     y, x = np.meshgrid(*2 * [(np.arange(200) + 0.5) / 200], indexing="ij")
     egg_box = 3e-9 * np.cos(14 * np.pi * y) * np.cos(12 * np.pi * x)
-    found = gd.surface_from(egg_box, "1 um", cutoff="90 nm").asperities
-    assert_allclose(found.height, 0.0, atol=1e-11)
+    asperities = gd.surface_from(egg_box, "1 um", cutoff="90 nm").asperities
+    assert_allclose(asperities.height, 0.0, atol=1e-11)
     # curvature is taken out of the map: a paraboloid of a hundredth of its height bends the tips by less than 2 %
-    assert_allclose(found.radius, 1.0 / (1.5e-9 * np.pi**2 * (14**2 + 12**2) / 1e-12), rtol=0.02)
+    assert_allclose(asperities.radius, 1.0 / (1.5e-9 * np.pi**2 * (14**2 + 12**2) / 1e-12), rtol=0.02)
     for name, waves in (("along", 12), ("across", 14)):
-        places = np.unique(np.round(found[name].values * 1e12)) * 1e-12
+        places = np.unique(np.round(asperities[name].values * 1e12)) * 1e-12
         steps = np.diff(places)
         assert_allclose(steps[steps > 1e-8], 1e-6 / waves, rtol=0.02)
-    assert (np.diff(found.along.values) >= 0.0).all()
+    assert (np.diff(asperities.along.values) >= 0.0).all()
 
 
 def test_a_list_has_the_statistics_of_its_scan(heights):
-    found = gd.surface_from(heights, "4 um", cutoff="120 nm")
-    at, ds = found.statistics.sel(cutoff=found.cutoff, by="summits"), found.asperities
+    surface = gd.surface_from(heights, "4 um", cutoff="120 nm")
+    at, ds = surface.statistics.sel(cutoff=surface.cutoff, by="summits"), surface.asperities
     assert ds.sizes["asperity"] == int(at.summit_count) > 300
     assert float(ds.height.std(ddof=1)) == pytest.approx(float(at.roughness), rel=1e-12, abs=0)
     assert float(1.0 / (1.0 / ds.radius).mean()) == pytest.approx(float(at.asperity_radius), rel=1e-12, abs=0)
@@ -56,13 +56,13 @@ def test_a_scene_reads_what_the_command_writes(scene, name, heights, tmp_path, c
         options += ["--case", "own.toml", "-o", "rough.toml"]
     assert main(["surface", "scan.npy", *options]) == 0
     assert "beyond touch nothing" in capsys.readouterr().out
-    found = gd.surface_from(heights, "4 um", cutoff="120 nm").asperities
+    asperities = gd.surface_from(heights, "4 um", cutoff="120 nm").asperities
     made = scene.replace({"contact.asperities": {"file": "list.csv"}})
-    one = flanks_of(made)[0]
-    middle = 0.5 * found.attrs["length"] if name == "x" else 0.0
-    assert_allclose(one.arc, found.along - middle, rtol=1e-8, atol=1e-15)
-    assert_allclose(one.height, found.height, rtol=1e-8, atol=1e-18)
-    assert_allclose(one.radius, found.radius, rtol=1e-8)
+    flank = flanks_of(made)[0]
+    middle = 0.5 * asperities.attrs["length"] if name == "x" else 0.0
+    assert_allclose(flank.arc, asperities.along - middle, rtol=1e-8, atol=1e-15)
+    assert_allclose(flank.height, asperities.height, rtol=1e-8, atol=1e-18)
+    assert_allclose(flank.radius, asperities.radius, rtol=1e-8)
 
 
 def test_a_list_needs_a_cutoff_and_one_flank(heights, tmp_path, monkeypatch):

@@ -207,14 +207,14 @@ def test_command(heights, tmp_path, monkeypatch, capfd):
     assert main([*asked, "-o", "part.toml"]) == 2
     assert "--cutoff" in capfd.readouterr().err
     assert main([*asked, "--cutoff", "60 nm", "-o", "part.toml"]) == 0
-    found = gd.surface_from(heights, "1 um", "60 nm", source="scan.npy")
+    measured = gd.surface_from(heights, "1 um", "60 nm", source="scan.npy")
     written = tomllib.loads((tmp_path / "part.toml").read_text())["surface"]
-    assert set(written) == {key.removeprefix("surface.") for key in found.settings}
+    assert set(written) == {key.removeprefix("surface.") for key in measured.settings}
     assert f"> {60:g} nm" in capfd.readouterr().out
     assert main([*asked, "--cutoff", "60 nm", "-o", "part.toml"]) == 2
     assert main([*asked, "--cutoff", "60 nm", "-o", "mine.toml", "--case", "roller_slow"]) == 0
     surface = gd.load_case("mine.toml").surface
-    assert surface.roughness == pytest.approx(found.settings["surface.roughness"], rel=1e-3)
+    assert surface.roughness == pytest.approx(measured.settings["surface.roughness"], rel=1e-3)
     assert surface.provenance == written["provenance"]
     assert main(["surface", "scan.npy"]) == 2
     assert "--size" in capfd.readouterr().err
@@ -241,14 +241,14 @@ def test_lines_of_a_scan_are_aligned(heights, tmp_path, monkeypatch, capfd):
 
 
 def test_picture_shows_both_ways(heights):
-    found = gd.surface_from(heights, "1 um", "60 nm")
-    figure = gd.plot.surface(found.statistics, found.cutoff)
+    measured = gd.surface_from(heights, "1 um", "60 nm")
+    figure = gd.plot.surface(measured.statistics, measured.cutoff)
     for ax, name in zip(figure.axes, ("roughness", "asperity_density", "asperity_radius"), strict=True):
         summits, moments, mark = ax.get_lines()
         factor = 1e-12 if name == "asperity_density" else 1.0
-        np.testing.assert_allclose(summits.get_ydata(), factor * found.statistics[name].sel(by="summits"))
-        np.testing.assert_allclose(moments.get_ydata(), factor * found.statistics[name].sel(by="moments"))
+        np.testing.assert_allclose(summits.get_ydata(), factor * measured.statistics[name].sel(by="summits"))
+        np.testing.assert_allclose(moments.get_ydata(), factor * measured.statistics[name].sel(by="moments"))
         assert summits.get_linestyle() != moments.get_linestyle()
-        assert mark.get_xdata()[0] == found.cutoff
+        assert mark.get_xdata()[0] == measured.cutoff
     with pytest.raises(gd.SceneError, match="is missing"):
-        gd.plot.surface(found.statistics.drop_vars("roughness"))
+        gd.plot.surface(measured.statistics.drop_vars("roughness"))

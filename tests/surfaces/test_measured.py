@@ -54,8 +54,8 @@ def exact_moments(cutoff):
 
 @pytest.mark.parametrize("cutoff", [25e-9, 60e-9, 100e-9])
 def test_gaussian_surface_has_its_analytic_moments_and_asperities(heights, cutoff):
-    found = surface_from(bent(heights), SIZE, cutoff)
-    at = found.statistics.sel(cutoff=cutoff)
+    surface = surface_from(bent(heights), SIZE, cutoff)
+    at = surface.statistics.sel(cutoff=cutoff)
     exact = exact_moments(cutoff)
     # 24 maps of this kind scatter by 4 to 5 % in m0, which some (4000/300)^2 = 180 longest waves make up, by 1.4 to
     # 3.4 % in m2, 0.8 to 3 % in m4, 3 to 4 % in the roughness, about the exact values within 1 %: three times that.
@@ -69,7 +69,7 @@ def test_gaussian_surface_has_its_analytic_moments_and_asperities(heights, cutof
         assert_allclose(float(chosen["roughness"]), wanted.roughness, rtol=0.12, atol=0.0)
         assert_allclose(float(chosen["asperity_density"]), wanted.density, rtol=counted, atol=0.0)
         assert_allclose(float(chosen["asperity_radius"]), wanted.radius, rtol=counted, atol=0.0)
-    assert not any("Gaussian" in remark or "direction" in remark for remark in found.remarks)
+    assert not any("Gaussian" in remark or "direction" in remark for remark in surface.remarks)
 
 
 def test_two_ways_agree_closer_than_either_with_the_ensemble(heights):
@@ -96,16 +96,16 @@ def test_holes_are_named_and_hardly_matter(heights):
     holed[50:70, 100:150] = np.nan
     holed[250, :7] = np.nan
     holed[300, 350] = np.nan
-    found = surface_from(holed, SIZE, 60e-9)
-    assert found.statistics.attrs["holes"] == 3
-    assert found.remarks[0].startswith("3 holes (0.68 % of the points)")
+    surface = surface_from(holed, SIZE, 60e-9)
+    assert surface.statistics.attrs["holes"] == 3
+    assert surface.remarks[0].startswith("3 holes (0.68 % of the points)")
     whole = analysed(heights)
     for name in ("m0", "m2", "m4", "roughness", "asperity_density", "asperity_radius"):
         # 2 % of the area is not counted, and differs from the rest as much as such a part does
-        ours = found.statistics[name].sel(cutoff=60e-9)
+        ours = surface.statistics[name].sel(cutoff=60e-9)
         assert_allclose(ours, whole[name], rtol=0.02, atol=0.0, err_msg=name)
     masked = analysed(np.ma.masked_invalid(holed))
-    assert masked["m4"] == found.statistics["m4"].sel(cutoff=60e-9)
+    assert masked["m4"] == surface.statistics["m4"].sel(cutoff=60e-9)
 
 
 def test_what_was_filled_is_not_counted(heights):
@@ -176,15 +176,15 @@ def test_formulas_at_the_limit_of_narrow_bands():
 
 
 def test_settings_go_into_a_scene_and_a_case_file(heights, tmp_path):
-    found = surface_from(heights, SIZE, "60 nm", source="wafer 7.npy")
-    scene = SCENE.replace(found.settings)
-    at = found.statistics.sel(cutoff=60e-9, by="summits")
+    surface = surface_from(heights, SIZE, "60 nm", source="wafer 7.npy")
+    scene = SCENE.replace(surface.settings)
+    at = surface.statistics.sel(cutoff=60e-9, by="summits")
     assert scene.surface.roughness == pytest.approx(float(at["roughness"]), rel=5e-4)
     assert scene.surface.asperity_density == pytest.approx(float(at["asperity_density"]), rel=5e-4)
     assert scene.surface.provenance.startswith(
         "wafer 7.npy: 384 x 384 points, 4 um x 4 um; cut-off wavelength 60 nm"
     )
-    fragment = tomllib.loads(found.fragment())
+    fragment = tomllib.loads(surface.fragment())
     assert SCENE.replace({f"surface.{key}": value for key, value in fragment["surface"].items()}) == scene
     path = tmp_path / "case.toml"
     path.write_text(gd.dump_case(scene), encoding="utf-8")
@@ -205,29 +205,29 @@ def test_two_rough_flanks_are_one_rougher_one(heights):
 
 def test_heights_that_are_not_gaussian_are_named(heights):
     worn = np.minimum(heights, 0.3 * RMS)  # plateaus, as after running in
-    found = surface_from(worn, SIZE, 60e-9)
-    (remark,) = (each for each in found.remarks if "not Gaussian" in each)
-    assert f"skewness {float(found.statistics.summit_skewness.sel(cutoff=60e-9)):.2f}" in remark
+    surface = surface_from(worn, SIZE, 60e-9)
+    (remark,) = (text for text in surface.remarks if "not Gaussian" in text)
+    assert f"skewness {float(surface.statistics.summit_skewness.sel(cutoff=60e-9)):.2f}" in remark
     ground = gaussian_map(256, 2e-6, RMS, shortest=SHORTEST, longest=LONGEST, seed=1)
     grooved = surface_from(ground[:, ::2].repeat(2, axis=1)[:, :128].repeat(2, axis=1), 2e-6, 60e-9)
-    assert any("has a direction" in each for each in grooved.remarks)
+    assert any("has a direction" in text for text in grooved.remarks)
 
 
 def test_few_summits_are_named(heights):
     small = surface_from(heights[:64, :64], SIZE / 6, 60e-9)
-    assert any(each.startswith("Only") for each in small.remarks)
+    assert any(text.startswith("Only") for text in small.remarks)
 
 
 def test_maps_that_are_not_square(heights):
     """A single size is that of a row; the points are as far apart along the other index."""
     part = heights[:192]
-    one, two = surface_from(part, SIZE), analysed(part, (SIZE / 2, SIZE), 0.1e-6)
-    assert one.statistics.attrs["size"] == two.attrs["size"]
+    first, second = surface_from(part, SIZE), analysed(part, (SIZE / 2, SIZE), 0.1e-6)
+    assert first.statistics.attrs["size"] == second.attrs["size"]
     turned = analysed(part.T, (SIZE, SIZE / 2), 0.1e-6)
     for name in ("m0", "m2", "m4", "roughness", "asperity_density", "asperity_radius", "anisotropy"):
-        assert_allclose(turned[name], two[name], rtol=1e-9, atol=0.0)
+        assert_allclose(turned[name], second[name], rtol=1e-9, atol=0.0)
     with pytest.raises(gd.SceneError, match="choose a cut-off"):
-        _ = one.settings
+        _ = first.settings
 
 
 @pytest.mark.parametrize(
@@ -248,9 +248,9 @@ def test_maps_that_are_not_square(heights):
     ],
 )
 def test_what_cannot_be_analysed_is_named(heights, change, message):
-    given = {"heights": heights, "size": SIZE, "cutoff": None} | change
+    arguments = {"heights": heights, "size": SIZE, "cutoff": None} | change
     with pytest.raises(gd.SceneError, match=message):
-        surface_from(given.pop("heights"), given.pop("size"), **given)
+        surface_from(arguments.pop("heights"), arguments.pop("size"), **arguments)
 
 
 def test_the_summits_lie_above_the_surface(heights):
@@ -261,9 +261,9 @@ def test_the_summits_lie_above_the_surface(heights):
         assert float(at.summit_plane.sel(by="moments")) == pytest.approx(float(exact), rel=1e-12, abs=0)
         assert float(at.summit_plane.sel(by="summits")) == pytest.approx(float(exact), rel=0.05, abs=0)
     assert from_moments(*exact_moments(cutoff)).plane == pytest.approx(float(exact), rel=0.05, abs=0)
-    found = surface_from(heights, SIZE, 60e-9)
-    assert "initial.gap and mesh.backlash count from the summits' mean plane" in found.planes
-    assert found.planes in found.fragment()
+    surface = surface_from(heights, SIZE, 60e-9)
+    assert "initial.gap and mesh.backlash count from the summits' mean plane" in surface.planes
+    assert surface.planes in surface.fragment()
 
 
 @pytest.fixture(scope="module")
@@ -287,12 +287,12 @@ def test_lines_with_offsets_are_named_and_aligned(heights, clean, noise, holed):
     scan = bent(heights) + offsets
     if holed:
         scan[100] = scan[200:204, 50:90] = np.nan
-    found = surface_from(scan, SIZE, 60e-9)
-    (remark,) = (each for each in found.remarks if each.startswith("Line noise: rows"))
-    assert found.statistics.attrs["line_noise"][0] == pytest.approx(noise, rel=0.25, abs=0)
+    surface = surface_from(scan, SIZE, 60e-9)
+    (remark,) = (text for text in surface.remarks if text.startswith("Line noise: rows"))
+    assert surface.statistics.attrs["line_noise"][0] == pytest.approx(noise, rel=0.25, abs=0)
     assert "--align-rows" in remark
     aligned = surface_from(scan, SIZE, 60e-9, align_rows=True)
-    assert not any(each.startswith("Line noise") for each in aligned.remarks)
+    assert not any(text.startswith("Line noise") for text in aligned.remarks)
     assert aligned.provenance.endswith("; rows aligned")
     for name in ("roughness", "asperity_density", "asperity_radius"):
         # the medians of 384 differences, of which some 60 are independent, leave a tenth of their spread
@@ -300,7 +300,7 @@ def test_lines_with_offsets_are_named_and_aligned(heights, clean, noise, holed):
             float(clean[name]), rel=0.05, abs=0
         )
     other = surface_from(scan.T, SIZE, 60e-9)
-    assert any(each.startswith("Line noise: columns") for each in other.remarks)
+    assert any(text.startswith("Line noise: columns") for text in other.remarks)
 
 
 def test_surfaces_without_line_noise_are_not_said_to_have_it(heights):

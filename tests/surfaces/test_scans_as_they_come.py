@@ -20,7 +20,7 @@ def heights():
     return gaussian_map(128, 1e-6, 6e-9, shortest=40e-9, longest=300e-9, seed=1)
 
 
-def found(heights):
+def analysed(heights):
     return gd.surface_from(heights, "1 um", "50 nm")
 
 
@@ -60,18 +60,18 @@ def test_a_scan_that_stopped_is_named_with_its_lines(heights, kind, lines):
     stopped = heights.copy()
     stopped[96:] = {"last": stopped[95], "block": stopped[64:96], "constant": 1e-9}[kind]
     stopped = stopped if lines == "rows" else stopped.T
-    assert any(f"32 of 128 {lines} equal another one" in remark for remark in found(stopped).remarks)
-    assert not any("equal another" in remark for remark in found(heights).remarks)
+    assert any(f"32 of 128 {lines} equal another one" in remark for remark in analysed(stopped).remarks)
+    assert not any("equal another" in remark for remark in analysed(heights).remarks)
 
 
 def test_scars_are_named_with_their_number(heights):
     scarred = heights.copy()
     scarred[10:120:11, 20:90] += 20e-9
-    remarks = found(scarred).remarks
+    remarks = analysed(scarred).remarks
     assert any(remark.startswith("10 of 128 rows have a streak") for remark in remarks)
     assert (
-        found(scarred).settings["surface.asperity_radius"]
-        < found(heights).settings["surface.asperity_radius"]
+        analysed(scarred).settings["surface.asperity_radius"]
+        < analysed(heights).settings["surface.asperity_radius"]
     )
 
 
@@ -79,8 +79,8 @@ def test_scars_are_named_with_their_number(heights):
 @pytest.mark.parametrize("waves", [(16e-9, 100e-9), (40e-9, 300e-9), (100e-9, 500e-9)])
 def test_random_surfaces_have_neither(seed, waves):
     made = gaussian_map(256, 1e-6, 6e-9, shortest=waves[0], longest=waves[1], seed=seed)
-    for each in (made, made.T, np.round(1e10 * made)):
-        assert (streaks(each), repeated_lines(each)) == (0, 0)
+    for heights in (made, made.T, np.round(1e10 * made)):
+        assert (streaks(heights), repeated_lines(heights)) == (0, 0)
 
 
 def gwyddion(heights, *names):
@@ -137,7 +137,7 @@ def test_text_files_of_other_programs(heights, tmp_path, capsys):
     with pytest.raises(gd.SceneError, match="does not say in which unit"):
         read_scan(path)
     assert main(["surface", str(path), "--unit", "nm", "--size", "1 um", "--cutoff", "50 nm"]) == 0
-    assert f"{1e9 * found(heights).settings['surface.roughness']:.3g} nm" in capsys.readouterr().out
+    assert f"{1e9 * analysed(heights).settings['surface.roughness']:.3g} nm" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("fault", ["1.2.3", "x", ""])
@@ -178,4 +178,4 @@ def test_two_products_of_one_name_are_refused(heights, products, tmp_path, monke
         ]
         assert main([*asked, "--overwrite"]) == 2
         assert "named for two products" in capsys.readouterr().err
-    assert [each.name for each in tmp_path.iterdir()] == ["scan.npy"]
+    assert [entry.name for entry in tmp_path.iterdir()] == ["scan.npy"]

@@ -55,7 +55,7 @@ def test_dry_stop_without_drag_is_the_limit_of_little_drag():
 
 def test_run_down_solves_its_equation():
     inertia, c, k = 6.1e-20, 2e-17, 8e-18
-    found = solve_ivp(
+    solution = solve_ivp(
         lambda t, y: [-(c * y[0] + k * y[0] ** 2) / inertia, y[0]],
         (0, 1e-2),
         [2.0, 0.0],
@@ -63,7 +63,7 @@ def test_run_down_solves_its_equation():
         atol=1e-14,
     )
     speed, angle = solutions.run_down(1e-2, 2.0, inertia, viscous=c, drag=k)
-    np.testing.assert_allclose([speed, angle], found.y[:, -1], rtol=1e-9)
+    np.testing.assert_allclose([speed, angle], solution.y[:, -1], rtol=1e-9)
 
 
 def test_static_mesh_force_of_a_held_train():

@@ -69,7 +69,7 @@ def test_arrhenius_multiplies_a_law():
 
 
 @pytest.mark.parametrize(
-    ("name", "given", "key"),
+    ("name", "parameters", "key"),
     [
         ("rust", {}, "law"),
         ("contacts", {}, "contacts.area"),
@@ -79,9 +79,9 @@ def test_arrhenius_multiplies_a_law():
         ("adhesion_work", {"energy": 0.0}, "adhesion_work.energy"),
     ],
 )
-def test_wrong_laws_name_what_is_wrong(name, given, key):
+def test_wrong_laws_name_what_is_wrong(name, parameters, key):
     with pytest.raises(gd.SceneError) as error:
-        loss_law(name, **given)
+        loss_law(name, **parameters)
     assert error.value.key == key
 
 

@@ -128,14 +128,16 @@ def _assess(
     signal = record(speed, condition, rate, rng)
     known = cutoff(condition, rate) if condition.filtered else None
     for title, chart in maps.items():
-        found = gd.analysis.assess(signal, chart, anti_alias_filter=known, calibration=condition.calibration)
+        assessment = gd.analysis.assess(
+            signal, chart, anti_alias_filter=known, calibration=condition.calibration
+        )
         row = rows[title]
         row.records += 1
-        if found.conclusive:
+        if assessment.conclusive:
             row.clear += 1
-            row.widths.append(found.high - found.low)
-            if not found.low <= fraction <= found.high:
-                row.wrong.append(f"{fraction:g} at {rate:g} Hz: {found}")
+            row.widths.append(assessment.high - assessment.low)
+            if not assessment.low <= fraction <= assessment.high:
+                row.wrong.append(f"{fraction:g} at {rate:g} Hz: {assessment}")
 
 
 def markdown(rows: Mapping[str, Mapping[str, Row]]) -> str:
@@ -145,12 +147,12 @@ def markdown(rows: Mapping[str, Mapping[str, Row]]) -> str:
         "| condition | records | " + " | ".join(f"map {t}: clear | wrong | width" for t in titles) + " |",
         "|---|---:|" + "---:|---:|---:|" * len(titles),
     ]
-    for name, each in rows.items():
+    for name, columns in rows.items():
         cells = [
             f"{row.clear} | {len(row.wrong)} | {np.median(row.widths):.3f}" if row.clear else "0 | 0 | -"
-            for row in each.values()
+            for row in columns.values()
         ]
-        lines.append(f"| {name} | {each[titles[0]].records} | " + " | ".join(cells) + " |")
+        lines.append(f"| {name} | {columns[titles[0]].records} | " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
 
 
@@ -168,14 +170,14 @@ def main(arguments: list[str]) -> int:
     rows = make_rows(make_maps(), chosen, trials=int(options.get("--trials", "2")))
     table = markdown(rows)
     sys.stdout.write(table)
-    for name, each in rows.items():
-        for title, row in each.items():
+    for name, columns in rows.items():
+        for title, row in columns.items():
             sys.stdout.writelines(f"wrong, {name}, map {title}: {words}\n" for words in row.wrong)
     if not only:
         before, rest = _PAGE.read_text(encoding="utf-8").split(_MARKS[0])
         after = rest.split(_MARKS[1])[1]
         _PAGE.write_text(f"{before}{_MARKS[0]}\n{table}\n{_MARKS[1]}{after}", encoding="utf-8")
-    return int(any(row.share_wrong > 0.05 for each in rows.values() for row in each.values()))
+    return int(any(row.share_wrong > 0.05 for columns in rows.values() for row in columns.values()))
 
 
 if __name__ == "__main__":

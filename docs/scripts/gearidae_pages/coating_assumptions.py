@@ -131,13 +131,13 @@ def low_speed(
     LowSpeed
     """
     base = base or gd.preset("teodorescu2009_low_speed")
-    for one in assumptions:
-        scene = one.of(base)
+    for assumption in assumptions:
+        scene = assumption.of(base)
         sticks, turns = sticking_limit(scene, lowest=0.0, highest=0.9, resolution=resolution)
         half = gd.simulate(scene.replace({"coating.sam_fraction": _HALF}), samples="off")
         chart = gd.analysis.coating_map(scene, fractions)["characteristic_frequency"]
-        found = tuple(float(chart.sel(sam_fraction=f, method="nearest")) for f in fractions)
-        yield LowSpeed(one, sticks, turns, float(half["min_gear_speed"]), found)
+        frequencies = tuple(float(chart.sel(sam_fraction=f, method="nearest")) for f in fractions)
+        yield LowSpeed(assumption, sticks, turns, float(half["min_gear_speed"]), frequencies)
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,11 +158,12 @@ def high_speed(laws: Sequence[str] = tuple(LAWS)) -> Iterator[HighSpeed]:
     """
     base = gd.preset("teodorescu2009")
     for law, force in itertools.product(laws, (False, True)):
-        one = Assumption(law, radius_force=force)
+        assumption = Assumption(law, radius_force=force)
         means = [
-            float(gd.simulate(one.of(base, coating__sam_fraction=f))["gear_speed"].mean()) for f in (1.0, 0.0)
+            float(gd.simulate(assumption.of(base, coating__sam_fraction=f))["gear_speed"].mean())
+            for f in (1.0, 0.0)
         ]
-        yield HighSpeed(one, *means)
+        yield HighSpeed(assumption, *means)
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,7 +190,7 @@ def impacts(
         assert scene.roller is not None
         runs = [gd.simulate(Assumption(law).of(scene, coating__sam_fraction=f))["force"] for f in (0.0, 1.0)]
         peaks, tensions = (
-            [float(each) for each in ends] for ends in zip(*(_ends(run) for run in runs), strict=True)
+            [float(value) for value in ends] for ends in zip(*(_ends(run) for run in runs), strict=True)
         )
         yield Impact(law, scene.roller.speed, (peaks[0], peaks[1]), (tensions[0], tensions[1]))
 

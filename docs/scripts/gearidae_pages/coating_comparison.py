@@ -27,32 +27,49 @@ from gearidae_pages.coating_pictures import draw_all
 __all__ = ["high_speed_table", "impact_table", "low_speed_table", "with_tables", "write_page"]
 
 
-def low_speed_table(found: Sequence[LowSpeed]) -> str:
+def low_speed_table(outcomes: Sequence[LowSpeed]) -> str:
     """Write what the low-speed gears do as a table in Markdown."""
     heads = [f"{100 * f:g} %" for f in FRACTIONS]
     rows = []
-    for one in found:
-        ends = [_number(end, ".3f") for end in (one.sticks, one.turns)]
-        frequencies = [_number(1e-3 * each, ".2f") for each in one.frequencies]
-        rows.append([one.assumption.coating, one.assumption.contact, *ends, f"{one.speed:.4f}", *frequencies])
+    for outcome in outcomes:
+        ends = [_number(end, ".3f") for end in (outcome.sticks, outcome.turns)]
+        frequencies = [_number(1e-3 * value, ".2f") for value in outcome.frequencies]
+        rows.append(
+            [
+                outcome.assumption.coating,
+                outcome.assumption.contact,
+                *ends,
+                f"{outcome.speed:.4f}",
+                *frequencies,
+            ]
+        )
     head = ["coating", "asperities", "sticks at", "turns at", "smallest speed at 50 % (rad/s)"]
-    return _table([*head, *(f"frequency at {each} (kHz)" for each in heads)], 2, rows)
+    return _table([*head, *(f"frequency at {value} (kHz)" for value in heads)], 2, rows)
 
 
-def high_speed_table(found: Sequence[HighSpeed]) -> str:
+def high_speed_table(outcomes: Sequence[HighSpeed]) -> str:
     """Write mean speeds of the high-speed gears as a table in Markdown."""
     rows = [
-        [one.assumption.contact, f"{one.whole:.2f}", f"{one.bare:.2f}", f"{one.whole - one.bare:.3f}"]
-        for one in found
+        [
+            outcome.assumption.contact,
+            f"{outcome.whole:.2f}",
+            f"{outcome.bare:.2f}",
+            f"{outcome.whole - outcome.bare:.3f}",
+        ]
+        for outcome in outcomes
     ]
     return _table(["asperities", "SAM (rad/s)", "bare (rad/s)", "SAM less bare (rad/s)"], 1, rows)
 
 
-def impact_table(found: Sequence[Impact]) -> str:
+def impact_table(outcomes: Sequence[Impact]) -> str:
     """Write peak forces and tensions of the rollers as a table in Markdown."""
     rows = [
-        [f"{one.speed:g} m/s", LAWS[one.law], *(_micro(each) for each in (*one.peaks, *one.tensions))]
-        for one in found
+        [
+            f"{outcome.speed:g} m/s",
+            LAWS[outcome.law],
+            *(_micro(value) for value in (*outcome.peaks, *outcome.tensions)),
+        ]
+        for outcome in outcomes
     ]
     heads = ["peak, bare (uN)", "peak, SAM (uN)", "largest tension, bare (uN)", "largest tension, SAM (uN)"]
     return _table(["speed", "asperities", *heads], 2, rows)

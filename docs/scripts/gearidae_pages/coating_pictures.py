@@ -21,8 +21,8 @@ __all__ = ["draw_all", "draw_frequencies", "draw_high_speed", "draw_impacts", "d
 
 Panels: TypeAlias = NDArray[np.object_]
 
-_CONTACTS: Final = tuple(dict.fromkeys(one.contact for one in ALL_ASSUMPTIONS))
-_COATINGS: Final = tuple(dict.fromkeys(one.coating for one in ALL_ASSUMPTIONS))
+_CONTACTS: Final = tuple(dict.fromkeys(assumption.contact for assumption in ALL_ASSUMPTIONS))
+_COATINGS: Final = tuple(dict.fromkeys(assumption.coating for assumption in ALL_ASSUMPTIONS))
 _WORN: Final = (1.0, 0.5, 0.47, 0.45)  # of Fig. 7
 _MAP: Final = np.round(np.linspace(1.0, 0.5, 26), 3)
 _PERIOD: Final = 1e-4  # of the drive's 10 kHz [s]
@@ -104,11 +104,11 @@ def draw_low_speed() -> Figure:
     """Draw the gear's speed at the fractions of Fig. 7, a row for each coating and a column for each contact."""
     figure, axes = _new(len(_COATINGS), len(_CONTACTS), 9.6, 8.4)
     base = gd.preset("teodorescu2009_low_speed").replace({"run.samples": 3001})
-    for one in ALL_ASSUMPTIONS:
-        row, column = _COATINGS.index(one.coating), _CONTACTS.index(one.contact)
+    for assumption in ALL_ASSUMPTIONS:
+        row, column = _COATINGS.index(assumption.coating), _CONTACTS.index(assumption.contact)
         ax = axes[row, column]
         for number, fraction in enumerate(_WORN):
-            run = gd.simulate(one.of(base, coating__sam_fraction=fraction))
+            run = gd.simulate(assumption.of(base, coating__sam_fraction=fraction))
             ax.plot(
                 run["time"],
                 run["gear_speed"],
@@ -118,11 +118,11 @@ def draw_low_speed() -> Figure:
                 label=f"SAM {100 * fraction:g} %",
             )
         if row == 0:
-            ax.set_title(one.contact, fontsize="small", loc="left")
+            ax.set_title(assumption.contact, fontsize="small", loc="left")
         if row == len(_COATINGS) - 1:
             ax.set_xlabel("time (s)")
         if column == 0:
-            ax.set_ylabel(f"{one.coating}\nspeed (rad/s)", fontsize="small")
+            ax.set_ylabel(f"{assumption.coating}\nspeed (rad/s)", fontsize="small")
     axes[-1, 0].legend(frameon=False, fontsize="x-small", loc="lower left")
     return figure
 
@@ -131,18 +131,18 @@ def draw_frequencies() -> Figure:
     """Draw the characteristic frequency over the SAM fraction (Fig. 10), a panel for each coating."""
     figure, axes = _new(1, len(_COATINGS), 9.6, 3.4)
     base = gd.preset("teodorescu2009_low_speed")
-    for one in ALL_ASSUMPTIONS:
-        ax, number = axes[0, _COATINGS.index(one.coating)], _CONTACTS.index(one.contact)
-        chart = gd.analysis.coating_map(one.of(base), _MAP)
+    for assumption in ALL_ASSUMPTIONS:
+        ax, number = axes[0, _COATINGS.index(assumption.coating)], _CONTACTS.index(assumption.contact)
+        chart = gd.analysis.coating_map(assumption.of(base), _MAP)
         ax.plot(
             100.0 * chart["sam_fraction"],
             1e-3 * chart["characteristic_frequency"],
             color=COLOURS[number],
             linestyle=LINE_STYLES[number],
             linewidth=1.3,
-            label=one.contact,
+            label=assumption.contact,
         )
-        ax.set_title(one.coating, fontsize="small", loc="left")
+        ax.set_title(assumption.coating, fontsize="small", loc="left")
         ax.set_xlabel("SAM (%)")
         ax.set_yscale("log")
         ax.yaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
@@ -157,16 +157,16 @@ def draw_limits(low: Sequence[LowSpeed]) -> Figure:
     """Draw the SAM fraction below which the gears stick, a row for each coating."""
     figure, axes = _new(1, 1, 7.0, 3.2)
     ax = axes[0, 0]
-    for one in low:
-        row, number = _COATINGS.index(one.assumption.coating), _CONTACTS.index(one.assumption.contact)
+    for outcome in low:
+        row, number = _COATINGS.index(outcome.assumption.coating), _CONTACTS.index(outcome.assumption.contact)
         ax.plot(
-            50.0 * (one.sticks + one.turns),
+            50.0 * (outcome.sticks + outcome.turns),
             row + 0.16 * (number - 1.5),
             marker=_MARKERS[number],
             markersize=6,
             linestyle="none",
             color=COLOURS[number],
-            label=one.assumption.contact if row == 0 else None,
+            label=outcome.assumption.contact if row == 0 else None,
         )
     ax.set_yticks(range(len(_COATINGS)), _COATINGS)
     ax.invert_yaxis()

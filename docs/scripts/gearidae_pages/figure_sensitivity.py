@@ -131,7 +131,7 @@ def figure_changes(quantities: Sequence[Quantity] = QUANTITIES) -> list[Moved]:
     -------
     list of Moved
     """
-    found = []
+    moves = []
     for quantity in quantities:
         whole = quantity.of(quantity.scene)
         changes = {}
@@ -143,17 +143,17 @@ def figure_changes(quantities: Sequence[Quantity] = QUANTITIES) -> list[Moved]:
                 for part in (-_PART, _PART)
             ]
             changes[key] = float(max(np.abs(np.array(moved) / whole - 1.0)))
-        found.append(Moved(quantity, whole, changes))
-    return found
+        moves.append(Moved(quantity, whole, changes))
+    return moves
 
 
-def figure_table(found: Sequence[Moved]) -> str:
+def figure_table(moves: Sequence[Moved]) -> str:
     """Write changes as a table in Markdown, in per cent; empty where a quantity cannot depend on a number."""
     lines = [
         "| figure | quantity | as it stands | " + " | ".join(INFERRED.values()) + " |",
         "|---|---|---:|" + "---:|" * len(INFERRED),
     ]
-    for moved in found:
+    for moved in moves:
         cells = [_per_cent(moved.changes[key]) if key in moved.changes else "" for key in INFERRED]
         quantity = moved.quantity
         stands = f"{moved.value:.4g} {quantity.unit}"

@@ -108,20 +108,20 @@ def brute_force(scene: gd.Scene, law: gd.wear.LossLaw, most: int, resolved: str)
     start = engine.Start()
     before = None
     for _ in range(most):
-        own = window.replace({**coverage.changes(state), "run.duration": PATIENCE * window.run.duration})
-        solution = engine.solve(own, start=start)
+        covered = window.replace({**coverage.changes(state), "run.duration": PATIENCE * window.run.duration})
+        solution = engine.solve(covered, start=start)
         if solution.extremes is None or not math.isnan(solution.extremes.stick_time):
             return BruteForce(np.arange(len(kept)) / teeth, np.array(kept), True)
         # exposures go on where the coating is the same as in the cycle before
         exposures = gained(
-            solution, before if start.scene and start.scene.coating == own.coating else None, own
+            solution, before if start.scene and start.scene.coating == covered.coating else None, covered
         )
-        seen = coverage.exposure(own, with_exposures(solution, exposures), 1, state)
+        seen = coverage.exposure(covered, with_exposures(solution, exposures), 1, state)
         state = np.clip(state + law.rate(state, seen) / teeth, 0.0, 1.0)
         kept.append(state)
         before = solution
         assert solution.checkpoint is not None
-        start = engine.end_of(own, solution.checkpoint, start.time)
+        start = engine.end_of(covered, solution.checkpoint, start.time)
     return BruteForce(np.arange(len(kept)) / teeth, np.array(kept), False)
 
 
@@ -148,7 +148,7 @@ def fast_life(cycles: int, pairing: str = "patches") -> tuple[gd.Scene, gd.wear.
 
 
 def compared(
-    scene: gd.Scene, resolved: str, found: xr.Dataset, brute: BruteForce, *, before: float = 1.0
+    scene: gd.Scene, resolved: str, life: xr.Dataset, brute: BruteForce, *, before: float = 1.0
 ) -> Comparison:
     """Compare a life with brute force.
 
@@ -169,14 +169,14 @@ def compared(
     """
     coverage = coverage_of(require_gears(scene), resolved, PLACES)
     uniform = resolved == "uniform"
-    ours = found.coverage.values[:, :, None, None] if uniform else found.coverage_by_place.values
-    sticking = (float(found.attrs.get("passages_to_sticking", math.nan)), float(brute.passages[-1]))
+    ours = life.coverage.values[:, :, None, None] if uniform else life.coverage_by_place.values
+    sticking = (float(life.attrs.get("passages_to_sticking", math.nan)), float(brute.passages[-1]))
 
     def at(passages: np.ndarray) -> np.ndarray:
         columns = [np.interp(passages, brute.passages, column) for column in brute.states.T]
         return np.array([coverage.table(state) for state in np.array(columns).T])
 
-    passages = found.passages.values
+    passages = life.passages.values
     scale = sticking[1] / sticking[0] if brute.sticks else 1.0
     theirs, by_share = at(passages), at(passages * scale)
     early = passages <= min(sticking[1], passages[-1]) - before if brute.sticks else passages >= 0.0
@@ -209,23 +209,23 @@ def main() -> None:
     parser.add_argument("--tolerance", type=float, default=1e-3)
     parser.add_argument("--resolved", default="uniform")
     parser.add_argument("--pairing", default="patches")
-    given = parser.parse_args()
-    scene, law = fast_life(given.cycles, given.pairing)
+    arguments = parser.parse_args()
+    scene, law = fast_life(arguments.cycles, arguments.pairing)
     began = time.process_time()
-    brute = brute_force(scene, law, 4 * given.cycles, given.resolved)
+    brute = brute_force(scene, law, 4 * arguments.cycles, arguments.resolved)
     middle = time.process_time()
-    found = gd.studies.life(
+    life = gd.studies.life(
         scene,
         law,
-        tolerance=given.tolerance,
+        tolerance=arguments.tolerance,
         places=PLACES,
-        resolved=given.resolved,
+        resolved=arguments.resolved,
         frequency=False,
         passages=1e12 if brute.sticks else float(brute.passages[-1]),
     )
     end = time.process_time()
-    seen = compared(scene, given.resolved, found, brute)
-    simulated, direct = (found.attrs[f"mesh_cycles_{name}"] for name in ("simulated", "direct"))
+    seen = compared(scene, arguments.resolved, life, brute)
+    simulated, direct = (life.attrs[f"mesh_cycles_{name}"] for name in ("simulated", "direct"))
     lines = [
         f"brute force: {len(brute.passages) - 1} mesh cycles, {middle - began:.0f} s, sticks: {brute.sticks}",
         f"cycle jump: {simulated} mesh cycles, {direct} of them one by one, {end - middle:.0f} s",

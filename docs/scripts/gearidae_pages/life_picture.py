@@ -46,8 +46,8 @@ def follow(scene: gd.Scene, fractions: np.ndarray = FRACTIONS, fraction: float =
         From `gearidae.studies.assess_life`.
     """
     law = gd.wear.loss_law("adhesion_work", energy=ENERGY)
-    found = gd.studies.life(scene, law, fraction=fraction)
-    return gd.studies.assess_life(found, gd.studies.coating_map(scene, fractions), noise=NOISE)
+    life = gd.studies.life(scene, law, fraction=fraction)
+    return gd.studies.assess_life(life, gd.studies.coating_map(scene, fractions), noise=NOISE)
 
 
 def shown(seen: xr.Dataset) -> str:
@@ -55,7 +55,7 @@ def shown(seen: xr.Dataset) -> str:
     true = seen["coverage"].mean("side")
     clear = seen["assessed_verdict"] == "clear"
     held = (seen["assessed_low"] <= true) & (true <= seen["assessed_high"])
-    missed = [f"{each:.4f}" for each in true[clear & ~held].values]
+    missed = [f"{value:.4f}" for value in true[clear & ~held].values]
     return (
         f"ends: {seen.attrs['ending']}, after {float(seen['passages'][-1]):.4g} passages\n"
         f"mesh cycles simulated: {seen.attrs['mesh_cycles_simulated']}\n"

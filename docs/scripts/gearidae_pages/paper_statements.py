@@ -104,7 +104,7 @@ def _modulus() -> Iterator[str]:
         ("silicon's modulus", gd.preset("roller_slow").replace({"coating.sam_fraction": 1.0})),
         (f"{MODULUS / 1e9:g} GPa, Poisson's ratio {RATIO:g}", _monolayer(gd.preset("roller_slow"))),
     ):
-        surface = next(each.surface for each in scene.materials() if each.share > 0.0)
+        surface = next(material.surface for material in scene.materials() if material.share > 0.0)
         tip = asperity_of(surface)
         law = law_of("jkr", surface)
         loss = law.loss * tip.hertz_factor * surface.roughness**2.5
@@ -287,7 +287,7 @@ def main(arguments: Sequence[str]) -> None:
     if arguments[:1] == ["--picture"]:
         draw_family().savefig(Path(arguments[1]), dpi=150, metadata={"Software": None})
         return
-    for number in [int(each) for each in arguments] or STATEMENTS:
+    for number in [int(argument) for argument in arguments] or STATEMENTS:
         for line in STATEMENTS[number]():
             sys.stdout.write(f"{number}  {line}\n")
             sys.stdout.flush()

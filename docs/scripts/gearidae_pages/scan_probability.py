@@ -37,10 +37,10 @@ def asperities_of_scans(scans: int = 4) -> dict[str, str]:
         gd.surfaces.gaussian_map(256, 2e-6, 6e-9, shortest=80e-9, longest=500e-9, seed=seed)
         for seed in range(scans)
     ]
-    found = [gd.surface_from(heights, "2 um", cutoff="120 nm").settings for heights in maps]
+    surfaces = [gd.surface_from(heights, "2 um", cutoff="120 nm").settings for heights in maps]
     drawn = {}
     for key in ("surface.roughness", "surface.asperity_density", "surface.asperity_radius"):
-        values = [float(each[key]) for each in found]
+        values = [float(settings[key]) for settings in surfaces]
         drawn[key] = f"normal({np.mean(values)}, {np.std(values, ddof=1)})"
     return drawn
 
@@ -79,10 +79,10 @@ def probability_table(ds: xr.Dataset, exits: Sequence[int] = EXITS) -> str:
     ]
     for count in exits:
         early = ds.assign(sticks=ds["sticks"].where(ds["stick_exits"] <= count, 0.0))
-        found = gd.studies.sticking_probability(early)
-        low, high = float(found["low"]), float(found["high"])
+        share = gd.studies.sticking_probability(early)
+        low, high = float(share["low"]), float(share["high"])
         lines.append(
-            f"| {count} | {int(found['stuck'])} of {int(found['members'])} | {float(found['probability']):.2f} "
+            f"| {count} | {int(share['stuck'])} of {int(share['members'])} | {float(share['probability']):.2f} "
             f"| {low:.2f} and {high:.2f} |"
         )
     return "\n".join(lines) + "\n"

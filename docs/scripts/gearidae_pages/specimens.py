@@ -42,30 +42,30 @@ def rows(seeds: int) -> Iterator[tuple[str, ...]]:
     cycles = turned / (2.0 * np.pi / SCENE.gears.gear_teeth)
     speed = (turned / SCENE.run.duration).values
     yield "mean speed of 1 ms, rad/s", *map(with_error, speed)
-    yield "scatter between gears, rad/s", *(f"{each.std(ddof=1):.2g}" for each in speed)
+    yield "scatter between gears, rad/s", *(f"{gears.std(ddof=1):.2g}" for gears in speed)
     yield (
         "adhesion loss over drive work, %",
         *map(with_error, 100.0 * (ds.adhesion_loss / ds.drive_work).values),
     )
     joined = ds.asperities_in_contact
     yield "asperities joined, mean", *map(with_error, joined.mean("time").values)
-    yield "asperities joined, largest", *(f"{each:.0f}" for each in joined.max(("time", "seed")).values)
+    yield "asperities joined, largest", *(f"{gears:.0f}" for gears in joined.max(("time", "seed")).values)
     events = ((ds.asperity_onsets + ds.asperity_detachments) / cycles).values
     yield "joinings and detachments per mesh cycle", *map(with_error, events)
     free = SCENE.replace({"load.torque": 0.0, "drive.torque": ATTEMPTS[0]})
-    found = gd.studies.starting_torque(free, COVERAGES, seeds=seeds, progress=True)
-    quantiles = found.quantiles.values
+    torques = gd.studies.starting_torque(free, COVERAGES, seeds=seeds, progress=True)
+    quantiles = torques.quantiles.values
     yield (
         "starting torque, 10 / 50 / 90 %, N m",
-        *(" / ".join(f"{q:.2g}" for q in each) for each in quantiles),
+        *(" / ".join(f"{q:.2g}" for q in gears) for gears in quantiles),
     )
-    yield "rate of the torque, N m per ms", *(f"{1e-3 * rate:.2g}" for rate in found.rate.values)
+    yield "rate of the torque, N m per ms", *(f"{1e-3 * rate:.2g}" for rate in torques.rate.values)
     for torque in ATTEMPTS:
         if torque != ATTEMPTS[0]:
-            found = gd.studies.starting_torque(
+            torques = gd.studies.starting_torque(
                 free.replace({"drive.torque": torque}), COVERAGES, seeds=seeds, progress=True
             )
-        starts = (f"{int(each.sum())} of {seeds}" for each in found.starts.values)
+        starts = (f"{int(gears.sum())} of {seeds}" for gears in torques.starts.values)
         yield f"start at {torque:g} N m, there at once", *starts
 
 

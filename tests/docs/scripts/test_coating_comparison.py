@@ -25,10 +25,10 @@ THICK = Assumption("jkr", "patches", 2.5e-9, radius_force=True)
 def test_a_thickness_lets_worn_gears_turn():
     """Coarse brackets: half covered patches of 2.5 nm are far from their limit, and the bare gears stick."""
     base = gd.preset("teodorescu2009_low_speed").replace({"run.duration": "0.1 s"})
-    (one,) = low_speed([THICK], base, resolution=0.5, fractions=(1.0,))
-    assert (one.sticks, one.turns) == (0.0, 0.45)
-    assert one.speed > 1.45
-    assert one.frequencies[0] == pytest.approx(1274, abs=30)  # 1.23 to 1.30 kHz, by its own uncertainty
+    (outcome,) = low_speed([THICK], base, resolution=0.5, fractions=(1.0,))
+    assert (outcome.sticks, outcome.turns) == (0.0, 0.45)
+    assert outcome.speed > 1.45
+    assert outcome.frequencies[0] == pytest.approx(1274, abs=30)  # 1.23 to 1.30 kHz, by its own uncertainty
 
 
 def test_assumptions_change_what_a_scene_has():
@@ -65,8 +65,8 @@ def test_tables_go_to_their_places_on_the_page():
 
 
 def test_limits_are_drawn_by_coating_and_contact():
-    found = [LowSpeed(one, 0.4, 0.41, 1.0, (1e3,) * len(FRACTIONS)) for one in ALL_ASSUMPTIONS]
-    (ax,) = draw_limits(found).axes
+    limits = [LowSpeed(assumption, 0.4, 0.41, 1.0, (1e3,) * len(FRACTIONS)) for assumption in ALL_ASSUMPTIONS]
+    (ax,) = draw_limits(limits).axes
     assert [label.get_text() for label in ax.get_yticklabels()] == [
         "patches, 0 nm",
         "patches, 2.5 nm",

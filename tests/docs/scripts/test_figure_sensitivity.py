@@ -30,7 +30,7 @@ def test_changes_are_those_of_a_power_law():
 
 def test_the_steady_speed_follows_from_table_1_alone():
     """The balance of torques, sqrt((M10 R2/R1 - M20) / alpha), has none of the inferred numbers in it."""
-    speed = next(each for each in QUANTITIES if each.figure == "4")
+    speed = next(quantity for quantity in QUANTITIES if quantity.figure == "4")
     assert "drive.torque" not in speed.keys
     (moved,) = figure_changes([speed])
     assert moved.value == pytest.approx(math.sqrt((2.43e-11 * 4 - 3e-11) / 8e-18), rel=0.005)
