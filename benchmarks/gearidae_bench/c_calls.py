@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from gearidae.engine.events.events import guard
 from gearidae.engine.events.record import EVENT_NUMBERS
-from gearidae.engine.events.schedule_knots import next_stop
+from gearidae.engine.events.stops import next_stop
 from gearidae.engine.followers.passages import PASSAGE_NUMBERS
 from gearidae.engine.formulas import adams
 from gearidae.engine.integrate.driver import BLOCK_EVENTS, BLOCK_PASSAGES, Output

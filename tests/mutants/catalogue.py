@@ -406,7 +406,7 @@ MUTANTS = (
     ),
     Mutant(
         "pressure not noted where a contact passes from one place to the next",
-        "engine/followers/exposures/pressure.py",
+        "engine/followers/exposures/contacts.py",
         "        if pressing > 0.0:\n",
         "        if pressing > 1e300:\n",
         ("engine/test_exposures.py::test_sliding_work_and_pressure_are_those_of_the_samples",),
@@ -578,7 +578,7 @@ MUTANTS = (
     ),
     Mutant(
         "energy of the attraction across the gap too small by a half",
-        "engine/pairs/attraction.py",
+        "engine/pairs/coverage.py",
         "energy = -2.0 / 3.0 * pull * near",
         "energy = -1.0 / 3.0 * pull * near",
         ("engine/test_attraction.py::test_gears_apart_are_pulled_by_both_flanks_and_along_the_path",),

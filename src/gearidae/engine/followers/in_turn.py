@@ -13,7 +13,7 @@ from gearidae.compiled import compiled
 from gearidae.engine.events.pair_events import PairEvent
 from gearidae.engine.followers import balance, joining, rubbing
 from gearidae.engine.followers.exposures import follow as exposures
-from gearidae.engine.followers.exposures.asperities import add_flips
+from gearidae.engine.followers.exposures.contacts import add_flips
 from gearidae.engine.followers.extremes import follow as extremes
 from gearidae.engine.model.located import model_at
 from gearidae.engine.model.state import Floats, Model, W

@@ -9,9 +9,8 @@ from gearidae.engine.events.events import ROOT, STOP, chatters, handle_mesh
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.pair_events import find_event, take_event
 from gearidae.engine.events.record import EVENTS_AT_ONCE
-from gearidae.engine.events.run_stop import stop_guard
-from gearidae.engine.events.schedule_knots import keeps_checkpoint, next_stop, pass_knot
 from gearidae.engine.events.sliding import follow_creeping, follow_sliding
+from gearidae.engine.events.stops import keeps_checkpoint, next_stop, pass_knot, stop_guard
 from gearidae.engine.followers import in_turn as followers
 from gearidae.engine.followers.passages import PASSAGES_AT_ONCE, write_passages
 from gearidae.engine.integrate.driver import (

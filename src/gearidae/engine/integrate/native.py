@@ -15,7 +15,7 @@ import numpy as np
 from gearidae.arrays import Ints
 from gearidae.compiled import compiled
 from gearidae.engine.elastic.elimination import begin_deflections
-from gearidae.engine.events.schedule_knots import next_stop
+from gearidae.engine.events.stops import next_stop
 from gearidae.engine.formulas import adams
 from gearidae.engine.integrate.by_address import observe_at
 from gearidae.engine.integrate.callbacks import callbacks

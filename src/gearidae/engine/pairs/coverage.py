@@ -1,7 +1,12 @@
-"""Shares of the materials of a pair; tables of them by tooth and place are `gearidae.scene.coating_table`.
+r"""Shares of the materials of a pair, and its attraction; tables by tooth and place are `gearidae.scene.coating_table`.
 
 Without such tables the shares are in the materials' force scales, and the loading branches of all materials have been
 added up at set-up: shares are then ones, which do not change.
+
+The attraction across the gap is the closed form of `gearidae.contact.attraction`, scaled. Per unit length a material
+with the constant c pulls with :math:`-c\,h^{-5/2}`, h its gap with its offset. It would do so at any distance: the pull
+at the cut-off is taken off everywhere, so that force and energy end there continuously and nothing is lost where a pair
+leaves.
 """
 
 from __future__ import annotations
@@ -13,7 +18,6 @@ from gearidae.compiled import compiled
 from gearidae.contact.kernels.evaluate import mixed_value
 from gearidae.contact.kernels.law import N_LOADING, loading_value
 from gearidae.engine.model.state import Model
-from gearidae.engine.pairs.attraction import attraction
 
 Shares: TypeAlias = tuple[float, float, float]
 """A number for each of bare, coated and mixed, the order of the materials."""
@@ -170,3 +174,26 @@ def path_position(m: Model, coast: int, pair: int, phase: float) -> float:
     """Position of a pair along the path of contact, clipped to it, in pitches."""
     along = m.scene.coast_phase + pair - phase if coast else phase - pair
     return min(max(along, 0.0), m.scene.contact_ratio)
+
+
+class Pull(NamedTuple):
+    """Attraction of one material per unit length: force, its slope in the gap, and energy."""
+
+    force: float
+    slope: float
+    energy: float
+
+
+@compiled
+def attraction(m: Model, material: int, gap: float) -> Pull:
+    """Attraction that a material of a pair would have if it covered everything, or with its share in the constant."""
+    own = m.scene.material[material]
+    c, far = own.attraction, m.scene.cutoff + own.gap_offset
+    if c == 0.0 or gap >= m.scene.cutoff:
+        return Pull(0.0, 0.0, 0.0)
+    h = gap + own.gap_offset
+    near = max(h, m.scene.attraction_floor)
+    pull, last = c / (near * near * math.sqrt(near)), c / (far * far * math.sqrt(far))
+    slope = 2.5 * pull / near if h > m.scene.attraction_floor else 0.0
+    energy = -2.0 / 3.0 * pull * near + pull * (h - near)
+    return Pull(last - pull, slope, energy + 2.0 / 3.0 * last * far - last * (h - far))

@@ -33,8 +33,7 @@ from gearidae.engine.model.state import (
 )
 from gearidae.engine.motion.static_solve import settle_nodes
 from gearidae.engine.pairs.tooth_pairs import contact_length, static_error
-from gearidae.engine.setup.build_attraction import add_attraction
-from gearidae.engine.setup.build_contact import Nodes, add_contact, add_nodes, choose_model
+from gearidae.engine.setup.build_contact import Nodes, add_attraction, add_contact, add_nodes, choose_model
 from gearidae.engine.setup.build_friction import add_friction
 from gearidae.engine.setup.build_population import add_population, population_rows
 from gearidae.engine.setup.build_torques import add_torques, reference_force, set_run, set_stop

@@ -1,4 +1,4 @@
-"""Torques at the shafts: a sum of terms (Teodorescu et al. 2009, Eq. 2), each a file of `torques`.
+"""Torques at the shafts: a sum of terms (Teodorescu et al. 2009, Eq. 2).
 
 A term says what it adds to the torque at a time and to its rate. Harmonics by order know the shaft's angle; a
 registered law (`gearidae.torques`) knows angle and speed. Forces and times are scaled: torques are over the base radius
@@ -15,7 +15,6 @@ from gearidae.engine.torques.harmonic import (
     sum_of_cosines,
     swing_of_cosines,
 )
-from gearidae.engine.torques.held_speed import held_speed_rate, held_speed_value
 from gearidae.engine.torques.law import law_rate, law_value
 from gearidae.engine.torques.schedule import schedule_rate, schedule_value, turns_within
 
@@ -83,3 +82,15 @@ def torque_range(m: Model, shaft: int, t: float, to: float, angle: float) -> tup
         change = m.scene.speed_gain * (schedule_value(m, SPEED, to, 0.0) - schedule_value(m, SPEED, t, 0.0))
         low, high = low + min(change, 0.0), high + max(change, 0.0)
     return middle - swing + low, middle + swing + high
+
+
+@compiled
+def held_speed_value(m: Model, t: float, speed: float) -> float:
+    """Torque over base radius at a scaled time and speed of the pinion, in units of the reference load."""
+    return m.scene.speed_gain * (schedule_value(m, SPEED, t, 0.0) - speed)
+
+
+@compiled
+def held_speed_rate(m: Model, t: float, acceleration: float) -> float:
+    """Rate of change of that along the motion."""
+    return m.scene.speed_gain * (schedule_rate(m, SPEED, t) - acceleration)

@@ -5,18 +5,25 @@ of each material, with :math:`\Psi` those per length. The energy balance follows
 times the rise of :math:`\Psi` (the lag, `gearidae.engine.followers.joining`): of rigid bodies with hysteresis and
 uniform coverage, contacts are added up at turning points, and where a contact leaves a place. Of others, the lag of
 each material is not known: there they are added up as often as sliding work is, with the mean length.
+
+Asperities of a population each count at their place on the flank, and lose when they join and when they detach, as in
+the energy balance. The largest pressure of a pair is followed from one look at its force to the next.
 """
 
 from __future__ import annotations
 
-from gearidae.compiled import compiled
-from gearidae.contact.history import joined_height
+from gearidae.compiled import compiled, compiled_once
+from gearidae.contact.history import extreme_gap, joined_height
 from gearidae.contact.kernels.law import loading_value
+from gearidae.engine.compiling import EXPOSURES
 from gearidae.engine.elastic.energy import nodes_number
-from gearidae.engine.followers.exposures.bins import ROWS, bin_at, share_at_edge
+from gearidae.engine.followers.exposures.bins import ROWS, bin_at, row_of, share_at_edge
 from gearidae.engine.formulas.interpolation import cubic
 from gearidae.engine.model.state import MATERIALS, Floats, Model
-from gearidae.engine.pairs.tooth_pairs import contact_length
+from gearidae.engine.pairs.tooth_pairs import contact_length, list_known
+from gearidae.engine.population.forces import candidate_energy
+from gearidae.engine.population.layout import ARC, HEIGHT, K_MATERIAL, KIND, REMEMBERED, SIGN, column
+from gearidae.engine.population.spots import pair_of, place_of_arc, spot_at
 
 
 @compiled
@@ -167,3 +174,87 @@ def _add(m: Model, k: int, material: int, here: int, more: float) -> None:
         m.rows[row + (ROWS.adhesion + material) * m.scene.bins + here] += (
             law.joining_energy * law.force_scale * more
         )
+
+
+@compiled(inline=True)
+def see_pressure(m: Model, t: float, k: int, inside: float, force: tuple[float, float]) -> None:
+    """Note the pressure of a pair, and that where it has passed from one place to the next since the last look.
+
+    Parameters
+    ----------
+    t : float
+        Time over tau.
+    k : int
+        Index of the pair's history.
+    inside : float
+        Place on the path of contact, in pitches.
+    force : tuple of float
+        Force there, with its rate.
+    """
+    own, here = m.work.exposing.pair[k], bin_at(m, inside)
+    if force[0] > 0.0:
+        note_pressure(m, k, here, inside, force[0])
+    if m.scene.population.flanks != 0 and t > own.seen_time and own.force_rate > 0.0 > force[1]:
+        # its turning points are no events
+        peak = extreme_gap(t - own.seen_time, own.force, own.force_rate, force[0], force[1])
+        if peak > 0.0 and here == own.seen_bin:
+            note_pressure(m, k, here, inside, peak)
+    if here != own.seen_bin:
+        if own.force > 0.0 or force[0] > 0.0:
+            _note_crossings(m, t, k, inside, force)
+        own.lowest = m.scene.cutoff  # another place
+    own.seen_time, own.seen_position, own.seen_bin = t, inside, here
+    own.force, own.force_rate = force
+
+
+@compiled(inline=True)
+def note_pressure(m: Model, k: int, here: int, inside: float, force: float) -> None:
+    """Note the pressure of a contact in a place, where it is the largest so far."""
+    row = m.work.exposing.pair[k].row + ROWS.pressure * m.scene.bins + here
+    radius = m.scene.start_radius + inside
+    # of squares: a root only where there is something to note
+    if force * force > m.rows[row] * m.rows[row] * (radius - radius * radius * m.scene.sum_curvature):
+        m.rows[row] = force / contact_length(m, inside)
+
+
+@compiled
+def _note_crossings(m: Model, t: float, k: int, inside: float, force: tuple[float, float]) -> None:
+    """Note the pressure where a pair has passed from one place to the next, on the cubic of its force.
+
+    Parameters
+    ----------
+    m, t, k, inside, force
+        As for `see_pressure`.
+    """
+    own, here = m.work.exposing.pair[k], bin_at(m, inside)
+    for place in range(min(own.seen_bin, here) + 1, max(own.seen_bin, here) + 1):
+        edge = place / m.scene.bins_per_pitch
+        share = (edge - own.seen_position) / (inside - own.seen_position)
+        pressing = cubic(share, t - own.seen_time, own.force, own.force_rate, force[0], force[1])
+        if pressing > 0.0:
+            note_pressure(m, k, place - 1, edge, pressing)
+            note_pressure(m, k, place, edge, pressing)
+
+
+@compiled_once(EXPOSURES)
+def add_flips(m: Model, y: Floats) -> None:
+    """Add what has joined or detached at a root, after `flip_asperities` has found it and before it is recorded."""
+    for i in range(list_known(m, y)):
+        k = m.work.known[i]
+        own, now = m.work.contact[k], pair_of(m, k, y)
+        row = row_of(m, now.coast, now.number)
+        at = spot_at(m, now.place, now.moves)
+        bend = 0.5 * m.scene.population.steepness / at.radius
+        for n in range(own.flips):
+            j = int(m.rows[column(m, k, REMEMBERED) + n])
+            arc, kind = m.rows[column(m, k, ARC) + j], int(m.rows[column(m, k, KIND) + j])
+            x = arc - at.arc
+            energy = candidate_energy(m, kind, m.rows[column(m, k, HEIGHT) + j] - now.gap - bend * x * x)
+            here = row + bin_at(m, place_of_arc(m, arc))
+            material = int(m.tables[kind + K_MATERIAL])
+            lost = here + (ROWS.adhesion + material) * m.scene.bins
+            if m.rows[column(m, k, SIGN) + j] > 0.0:
+                m.rows[here + (ROWS.contacts + material) * m.scene.bins] += 1.0
+                m.rows[lost] -= energy
+            else:
+                m.rows[lost] += energy

@@ -17,7 +17,7 @@ An elastic contact is looked at as often as the energy balance closes an interva
 to the next in such an interval, what it has joined is divided by its gap there, on the cubic of the gap; of elastic
 contacts, and of sliding work, in proportion to the way. Contacts on the tip relief count at the end of the path.
 
-Asperities of a population are counted one by one, each at its own place (the module `asperities` of this room); sliding
+Asperities of a population are counted one by one, each at its own place (`contacts.add_flips`); sliding
 work and pressure are those of the whole pair, where it touches. The work of friction is a fifth sum, of flanks that
 have friction (the module `rubbing` of this room).
 """
@@ -36,9 +36,10 @@ from gearidae.engine.followers.exposures.contacts import (
     join,
     joins,
     joins_here,
+    note_pressure,
+    see_pressure,
     turn_to_closing,
 )
-from gearidae.engine.followers.exposures.pressure import note_pressure, see_pressure
 from gearidae.engine.followers.exposures.sliding import (
     add_sliding,
     begin_intervals,
