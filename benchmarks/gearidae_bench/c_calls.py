@@ -82,7 +82,7 @@ def _restart(place, numbers, again):  # type: ignore[no-untyped-def]
     if again != 0:
         prepare_restart(m, y, yp)
     else:
-        m.work.adams.wanted = m.work.adams.own
+        m.work.adams.wanted = m.work.adams.native_newton
     return restart(Stepper(handles, m, y, yp, dky, spare, a[4 * n :]), next_stop(m))
 
 

@@ -414,8 +414,8 @@ MUTANTS = (
     Mutant(
         "a contact that comes and turns between two looks at the exposures not counted",
         "engine/followers/exposures/follow.py",
-        "    if own.known == 0 or own.pair != pair or own.time < before:\n",
-        "    if own.pair != pair:\n",
+        "    if exposure.known == 0 or exposure.pair != pair or exposure.time < before:\n",
+        "    if exposure.pair != pair:\n",
         ("engine/test_exposures.py::test_contacts_count_that_come_and_turn_between_two_looks",),
     ),
     Mutant(

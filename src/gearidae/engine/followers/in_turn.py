@@ -63,12 +63,12 @@ def step(
 
 
 @compiled(inline=True)
-def event(m: Model, t: float, y: Floats, yp: Floats, found: PairEvent) -> None:
+def event(m: Model, t: float, y: Floats, yp: Floats, event: PairEvent) -> None:
     """Take note of what has happened to a pair, before its history does."""
-    if m.scene.follow.balance != 0 and found.turns:
-        joining.event(m, y, found.coast, found.pair, found.k, found.gap)
+    if m.scene.follow.balance != 0 and event.turns:
+        joining.event(m, y, event.coast, event.pair, event.k, event.gap)
     if m.scene.follow.exposures != 0:
-        exposures.event(m, t, y, yp, found)
+        exposures.event(m, t, y, yp, event)
 
 
 @compiled

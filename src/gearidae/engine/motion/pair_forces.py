@@ -178,7 +178,7 @@ def with_deflections(m: Model, y: Floats) -> Floats:
 @compiled
 def is_eliminated(m: Model) -> bool:
     """Whether there are nodes that the integrator does not see."""
-    return bool(m.scene.nodes > 0 and m.work.adams.own != 0)
+    return bool(m.scene.nodes > 0 and m.work.adams.native_newton != 0)
 
 
 @compiled

@@ -40,17 +40,19 @@ def fraction_of(m: Model, side: int, coast: int, pair: int, inside: float) -> Fr
 
     On the coast flank the gear's tooth is the next one.
     """
-    own = m.scene.coverage[side]
-    row = own.values_at + int(pair + m.state.turns + side * coast) % own.teeth * own.places
-    along = inside * own.place_scale - 0.5
-    last = min(max(math.floor(along), -1), own.places - 1)  # before the first middle, or behind the last one
+    coverage = m.scene.coverage[side]
+    row = coverage.values_at + int(pair + m.state.turns + side * coast) % coverage.teeth * coverage.places
+    along = inside * coverage.place_scale - 0.5
+    last = min(
+        max(math.floor(along), -1), coverage.places - 1
+    )  # before the first middle, or behind the last one
     before = m.tables[row + max(last, 0)]
-    change = m.tables[row + min(last + 1, own.places - 1)] - before
-    u, rise = along - last, change * own.place_scale
+    change = m.tables[row + min(last + 1, coverage.places - 1)] - before
+    u, rise = along - last, change * coverage.place_scale
     return Fraction(
         before + change * (u * u * u * (10.0 - 15.0 * u + 6.0 * u * u)),
         30.0 * rise * u * u * (1.0 - u) * (1.0 - u),
-        60.0 * rise * own.place_scale * u * (1.0 - u) * (1.0 - 2.0 * u),
+        60.0 * rise * coverage.place_scale * u * (1.0 - u) * (1.0 - 2.0 * u),
     )
 
 
@@ -71,13 +73,13 @@ def share_changes(m: Model, coast: int, pair: int, inside: float) -> tuple[Share
     if m.scene.patches != 0:
         return (1.0 - f.value, f.value, 0.0), (-f.slope, f.slope, 0.0), (-f.bend, f.bend, 0.0)
     g = fraction_of(m, 1, coast, pair, inside)
-    one, one_slope, one_bend = f.value + g.value, f.slope + g.slope, f.bend + g.bend
+    total, total_slope, total_bend = f.value + g.value, f.slope + g.slope, f.bend + g.bend
     both, slope = f.value * g.value, f.slope * g.value + f.value * g.slope
     bend = f.bend * g.value + 2.0 * f.slope * g.slope + f.value * g.bend
     return (
-        (1.0 - one + both, both, one - 2.0 * both),
-        (slope - one_slope, slope, one_slope - 2.0 * slope),
-        (bend - one_bend, bend, one_bend - 2.0 * bend),
+        (1.0 - total + both, both, total - 2.0 * both),
+        (slope - total_slope, slope, total_slope - 2.0 * slope),
+        (bend - total_bend, bend, total_bend - 2.0 * bend),
     )
 
 
@@ -91,8 +93,8 @@ def shares_of(m: Model, coast: int, pair: int, inside: float) -> Shares:
 def note_shares(m: Model, k: int, coast: int, pair: int, inside: float) -> None:
     """Note the shares of the materials in the pair with the k-th history, for the nodes of its elastic contact."""
     if m.scene.by_place != 0:
-        own = m.work.shares[k]
-        own[0], own[1], own[2] = shares_of(m, coast, pair, inside)
+        shares = m.work.shares[k]
+        shares[0], shares[1], shares[2] = shares_of(m, coast, pair, inside)
 
 
 @compiled
@@ -100,8 +102,8 @@ def noted_shares(m: Model, k: int) -> Shares:
     """Shares that `note_shares` has noted last."""
     if m.scene.by_place == 0:
         return WHOLE
-    own = m.work.shares[k]
-    return own[0], own[1], own[2]
+    shares = m.work.shares[k]
+    return shares[0], shares[1], shares[2]
 
 
 @compiled(inline=True)
@@ -187,11 +189,11 @@ class Pull(NamedTuple):
 @compiled
 def attraction(m: Model, material: int, gap: float) -> Pull:
     """Attraction that a material of a pair would have if it covered everything, or with its share in the constant."""
-    own = m.scene.material[material]
-    c, far = own.attraction, m.scene.cutoff + own.gap_offset
+    surface = m.scene.material[material]
+    c, far = surface.attraction, m.scene.cutoff + surface.gap_offset
     if c == 0.0 or gap >= m.scene.cutoff:
         return Pull(0.0, 0.0, 0.0)
-    h = gap + own.gap_offset
+    h = gap + surface.gap_offset
     near = max(h, m.scene.attraction_floor)
     pull, last = c / (near * near * math.sqrt(near)), c / (far * far * math.sqrt(far))
     slope = 2.5 * pull / near if h > m.scene.attraction_floor else 0.0

@@ -343,9 +343,9 @@ def _begun(m: Model, scene: Scene, motion: list[float], skipped: dict[str, int])
 def _skipped(m: Model, scene: Scene) -> dict[str, int]:
     """What the contact of this scene does not need."""
     skipped = {"elastic_deflection": int(m.scene.nodes == 0)}
-    shares = {one.name: one.share for one in scene.materials()}
-    for own, name in zip(m.scene.material, MATERIAL_NAMES, strict=True):
+    shares = {material.name: material.share for material in scene.materials()}
+    for record, name in zip(m.scene.material, MATERIAL_NAMES, strict=True):
         skipped[f"{name}_surface"] = int(shares.get(name, 0.0) == 0.0)
-        without = own.stretch_limit == 0.0 and m.scene.population.flanks == 0
+        without = record.stretch_limit == 0.0 and m.scene.population.flanks == 0
         skipped[f"{name}_hysteresis"] = int(without or shares.get(name, 0.0) == 0.0)
     return skipped

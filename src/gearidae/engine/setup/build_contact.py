@@ -99,26 +99,26 @@ def add_contact(
     limits = Limits(scene, kernel)
     longest = 0
     for material, (surface, share, offset, _) in enumerate(parts_of(scene)):
-        own, tip = s.material[material], asperity_of(surface)
-        own.gap_offset = offset / surface.roughness
+        record, tip = s.material[material], asperity_of(surface)
+        record.gap_offset = offset / surface.roughness
         law = law_of(scene.contact.asperity, surface)
         check_reach(law, surface.roughness)
         table = law_table(law, kernel) if share > 0.0 else np.zeros(HEADER)
         energy = energy_table(law, kernel) if share > 0.0 else table
         scale = force_scale(surface.roughness, tip.hertz_factor, surface.asperity_density, width)
         force = share * scale * unit_length / float(s.force_unit)
-        own.force_scale, own.stretch_limit = force, table[H_STRETCH]
-        own.joining_energy = joining_energy(law) if share > 0.0 else 0.0
-        own.table_at, own.energy_at = tables.add(table), tables.add(energy)
-        own.number_at = tables.add(number_table(kernel, law.join))
+        record.force_scale, record.stretch_limit = force, table[H_STRETCH]
+        record.joining_energy = joining_energy(law) if share > 0.0 else 0.0
+        record.table_at, record.energy_at = tables.add(table), tables.add(energy)
+        record.number_at = tables.add(number_table(kernel, law.join))
         longest = max(longest, branch_length(table))
         if share > 0.0:
-            push, stored = loading_pieces(law, kernel, float(own.gap_offset))
+            push, stored = loading_pieces(law, kernel, float(record.gap_offset))
             loading[material], potential[material] = force * push, force * stored
             limits.add(s, tables, material, surface, law)
             for floor, gap in reach.items() if force * widest > 0.0 else ():  # a share may be too small
                 widest_gap = _outermost(law, kernel, floor / (force * widest))
-                reach[floor] = max(gap, widest_gap - float(own.gap_offset))
+                reach[floor] = max(gap, widest_gap - float(record.gap_offset))
     s.cutoff, s.contact_gap = reach[FORCE_FLOOR], reach[CONTACT_FORCE]
     if s.by_place == 0:  # shares that never change are mixed once
         loading, potential = loading.sum(axis=0), potential.sum(axis=0)
@@ -139,17 +139,17 @@ def add_coverage(s: Record, tables: Tables, scene: Scene) -> None:
     if not scene.coating.by_place:
         return
     s.by_place, s.patches = 1, int(scene.coating.pairing == "patches")
-    for own, table in zip(s.coverage, scene.coating.tables, strict=True):
-        add_fractions(own, tables, table, float(s.contact_ratio))
+    for coverage, table in zip(s.coverage, scene.coating.tables, strict=True):
+        add_fractions(coverage, tables, table, float(s.contact_ratio))
 
 
 def add_fractions(
-    own: Record, tables: Tables, table: Sequence[Sequence[float]], contact_ratio: float
+    coverage: Record, tables: Tables, table: Sequence[Sequence[float]], contact_ratio: float
 ) -> None:
-    """Lay out a side's fractions by tooth and place; `own`, its ``COVERAGE``, is changed."""
-    own.teeth, own.places = len(table), len(table[0])
-    own.values_at = tables.add(np.array(table).ravel())
-    own.place_scale = len(table[0]) / contact_ratio
+    """Lay out a side's fractions by tooth and place; `coverage`, its ``COVERAGE``, is changed."""
+    coverage.teeth, coverage.places = len(table), len(table[0])
+    coverage.values_at = tables.add(np.array(table).ravel())
+    coverage.place_scale = len(table[0]) / contact_ratio
 
 
 def _outermost(law: AsperityLaw, kernel: Kernel, least: float) -> float:
@@ -192,10 +192,12 @@ def add_attraction(
     sigma, cutoff = scene.surface.roughness, float(s.cutoff)
     s.attracts, s.attraction_floor = 1, FLOOR / sigma
     least = NEGLIGIBLE if isinstance(scene, GearScene) else NEGLIGIBLE_ALONE
-    for own, (surface, share, offset, _) in zip(s.material, parts_of(scene), strict=False):
+    for material, (surface, share, offset, _) in zip(s.material, parts_of(scene), strict=False):
         force = surface.hamaker * width * unit_length / (16.0 * sigma**3)
-        own.gap_offset, own.attraction = offset / sigma, share * force / float(s.force_unit)
-        cutoff = max(cutoff, (float(own.attraction) * widest / least) ** 0.4 - float(own.gap_offset))
+        material.gap_offset, material.attraction = offset / sigma, share * force / float(s.force_unit)
+        cutoff = max(
+            cutoff, (float(material.attraction) * widest / least) ** 0.4 - float(material.gap_offset)
+        )
     s.cutoff = cutoff
     if isinstance(scene, GearScene) and pairs_within_reach(scene, cutoff) > MOST_PAIRS:
         key = "surface.hamaker" if scene.surface.hamaker > 0.0 else "coating.hamaker"

@@ -31,32 +31,32 @@ def adds_often(m: Model) -> bool:
     """Whether contacts are added up wherever sliding work is, as the lag of each material is not known."""
     often = m.scene.nodes > 0 or m.scene.by_place != 0
     for material in range(MATERIALS):
-        own = m.scene.material[material]
-        often |= own.force_scale > 0.0 and own.stretch_limit == 0.0
+        surface = m.scene.material[material]
+        often |= surface.force_scale > 0.0 and surface.stretch_limit == 0.0
     return often
 
 
 @compiled
 def begin_contacts(m: Model, y: Floats, k: int, inside: float, gap: float) -> None:
     """Begin with what a pair has in contact at a start."""
-    own = m.work.exposing.pair[k]
+    exposure = m.work.exposing.pair[k]
     missing = _note_numbers(m, y, k, gap)
     for material in range(MATERIALS):
-        own.front[material] = own.number[material]
-        own.added[material] = (contact_length(m, inside) - missing) * (
-            own.number[material] - own.base[material]
+        exposure.front[material] = exposure.number[material]
+        exposure.added[material] = (contact_length(m, inside) - missing) * (
+            exposure.number[material] - exposure.base[material]
         )
 
 
 @compiled
 def turn_to_closing(m: Model, y: Floats, k: int, gap: float) -> None:
     """Begin again where a contact turns round from opening to closing, before its history takes that."""
-    own = m.work.exposing.pair[k]
-    own.turned = 1
+    exposure = m.work.exposing.pair[k]
+    exposure.turned = 1
     for material in range(MATERIALS):
         law = m.scene.material[material]
         if law.force_scale > 0.0 and (law.stretch_limit == 0.0 or m.scene.nodes > 0):
-            own.front[material] = _front(m, y, k, gap, material)
+            exposure.front[material] = _front(m, y, k, gap, material)
 
 
 @compiled(inline=True)
@@ -71,37 +71,37 @@ def joins_here(m: Model, k: int, inside: float, gap: float) -> bool:
 @compiled(inline=True)
 def joins(m: Model, k: int, gap: float) -> bool:
     """Whether asperities of a closing contact join: below what has joined before."""
-    h, found = m.state.history[k], m.scene.nodes > 0
+    h, joining = m.state.history[k], m.scene.nodes > 0
     for material in range(MATERIALS):
-        own = m.scene.material[material]
-        found |= own.force_scale > 0.0 and (gap < h.joined[material] or own.stretch_limit == 0.0)
-    return found
+        surface = m.scene.material[material]
+        joining |= surface.force_scale > 0.0 and (gap < h.joined[material] or surface.stretch_limit == 0.0)
+    return joining
 
 
 @compiled
 def join(m: Model, t: float, y: Floats, k: int, inside: float, gap: tuple[float, float]) -> None:
     """Add the contacts that a pair has made since that was last done, up to a gap, given with its rate."""
-    own, often = m.work.exposing.pair[k], m.work.exposing.often != 0
+    exposure, often = m.work.exposing.pair[k], m.work.exposing.often != 0
     missing = _note_numbers(m, y, k, gap[0])
     here, length = bin_at(m, inside), contact_length(m, inside)
-    mean = 0.5 * (length + contact_length(m, own.position)) if often else length - missing
+    mean = 0.5 * (length + contact_length(m, exposure.position)) if often else length - missing
     for material in range(MATERIALS):
-        if own.turned != 0 and m.scene.material[material].stretch_limit > 0.0 and m.scene.nodes == 0:
-            own.front[material], own.added[material] = own.base[material], 0.0
-        rise = own.number[material] - own.front[material]
+        if exposure.turned != 0 and m.scene.material[material].stretch_limit > 0.0 and m.scene.nodes == 0:
+            exposure.front[material], exposure.added[material] = exposure.base[material], 0.0
+        rise = exposure.number[material] - exposure.front[material]
         if rise <= 0.0:
             continue
         more = mean * rise
         if not often:
-            total = mean * (own.number[material] - own.base[material])
-            more = max(total - own.added[material], 0.0)
-            own.added[material] = total
-        if here == own.bin:
+            total = mean * (exposure.number[material] - exposure.base[material])
+            more = max(total - exposure.added[material], 0.0)
+            exposure.added[material] = total
+        if here == exposure.bin:
             _add(m, k, material, here, more)
         else:
             _divide(m, t, y, k, material, (inside, gap[0], gap[1]), more)
-        own.front[material] = own.number[material]
-    own.turned = 0
+        exposure.front[material] = exposure.number[material]
+    exposure.turned = 0
 
 
 @compiled(inline=True)
@@ -113,27 +113,29 @@ def _note_numbers(m: Model, y: Floats, k: int, gap: float) -> float:
     float
         By how much shorter the contact was on average when its contacts were made, from the lag of rigid bodies.
     """
-    own, h, lost = m.work.exposing.pair[k], m.state.history[k], 0.0
+    exposure, h, lost = m.work.exposing.pair[k], m.state.history[k], 0.0
     for material in range(MATERIALS):
         law = m.scene.material[material]
-        own.number[material] = own.base[material] = 0.0
+        exposure.number[material] = exposure.base[material] = 0.0
         if law.force_scale <= 0.0:
             continue
-        own.number[material] = _front(m, y, k, gap, material)
+        exposure.number[material] = _front(m, y, k, gap, material)
         if law.stretch_limit > 0.0 and m.scene.nodes == 0:
-            own.base[material] = -h.adhered_energy[material] / law.joining_energy
-            lost += law.joining_energy * law.force_scale * (own.number[material] - own.base[material])
+            exposure.base[material] = -h.adhered_energy[material] / law.joining_energy
+            lost += (
+                law.joining_energy * law.force_scale * (exposure.number[material] - exposure.base[material])
+            )
     return h.lag / lost if lost > 0.0 else 0.0
 
 
 @compiled(inline=True)
 def _front(m: Model, y: Floats, k: int, gap: float, material: int) -> float:
     """Asperities of a material in contact per length, over their density."""
-    own = m.scene.material[material]
+    surface = m.scene.material[material]
     if m.scene.nodes > 0:
         return nodes_number(m, k, y, gap, material)
-    height = joined_height(m.state.history[k].joined[material], gap, own.stretch_limit)
-    return loading_value(m.tables, own.number_at, height + own.gap_offset)[0]
+    height = joined_height(m.state.history[k].joined[material], gap, surface.stretch_limit)
+    return loading_value(m.tables, surface.number_at, height + surface.gap_offset)[0]
 
 
 @compiled
@@ -151,14 +153,14 @@ def _divide(
     more : float
         What it has made.
     """
-    own, (inside, gap, rate) = m.work.exposing.pair[k], there
-    last, first = own.number[material], own.front[material]
-    here, step, before = own.bin, 1 if inside > own.position else -1, first
+    exposure, (inside, gap, rate) = m.work.exposing.pair[k], there
+    last, first = exposure.number[material], exposure.front[material]
+    here, step, before = exposure.bin, 1 if inside > exposure.position else -1, first
     while here != bin_at(m, inside):
-        share = share_at_edge(m, here, own.position, inside)
+        share = share_at_edge(m, here, exposure.position, inside)
         front = first + share * (last - first)
         if m.scene.nodes == 0:  # of elastic contacts the deflection on the way is not known
-            passing = cubic(share, t - own.time, own.gap, own.gap_rate, gap, rate)
+            passing = cubic(share, t - exposure.time, exposure.gap, exposure.gap_rate, gap, rate)
             front = min(max(_front(m, y, k, passing, material), before), last)
         _add(m, k, material, here, more * (front - before) / (last - first))
         here, before = here + step, front
@@ -191,20 +193,20 @@ def see_pressure(m: Model, t: float, k: int, inside: float, force: tuple[float, 
     force : tuple of float
         Force there, with its rate.
     """
-    own, here = m.work.exposing.pair[k], bin_at(m, inside)
+    exposure, here = m.work.exposing.pair[k], bin_at(m, inside)
     if force[0] > 0.0:
         note_pressure(m, k, here, inside, force[0])
-    if m.scene.population.flanks != 0 and t > own.seen_time and own.force_rate > 0.0 > force[1]:
+    if m.scene.population.flanks != 0 and t > exposure.seen_time and exposure.force_rate > 0.0 > force[1]:
         # its turning points are no events
-        peak = extreme_gap(t - own.seen_time, own.force, own.force_rate, force[0], force[1])
-        if peak > 0.0 and here == own.seen_bin:
+        peak = extreme_gap(t - exposure.seen_time, exposure.force, exposure.force_rate, force[0], force[1])
+        if peak > 0.0 and here == exposure.seen_bin:
             note_pressure(m, k, here, inside, peak)
-    if here != own.seen_bin:
-        if own.force > 0.0 or force[0] > 0.0:
+    if here != exposure.seen_bin:
+        if exposure.force > 0.0 or force[0] > 0.0:
             _note_crossings(m, t, k, inside, force)
-        own.lowest = m.scene.cutoff  # another place
-    own.seen_time, own.seen_position, own.seen_bin = t, inside, here
-    own.force, own.force_rate = force
+        exposure.lowest = m.scene.cutoff  # another place
+    exposure.seen_time, exposure.seen_position, exposure.seen_bin = t, inside, here
+    exposure.force, exposure.force_rate = force
 
 
 @compiled(inline=True)
@@ -226,11 +228,13 @@ def _note_crossings(m: Model, t: float, k: int, inside: float, force: tuple[floa
     m, t, k, inside, force
         As for `see_pressure`.
     """
-    own, here = m.work.exposing.pair[k], bin_at(m, inside)
-    for place in range(min(own.seen_bin, here) + 1, max(own.seen_bin, here) + 1):
+    exposure, here = m.work.exposing.pair[k], bin_at(m, inside)
+    for place in range(min(exposure.seen_bin, here) + 1, max(exposure.seen_bin, here) + 1):
         edge = place / m.scene.bins_per_pitch
-        share = (edge - own.seen_position) / (inside - own.seen_position)
-        pressing = cubic(share, t - own.seen_time, own.force, own.force_rate, force[0], force[1])
+        share = (edge - exposure.seen_position) / (inside - exposure.seen_position)
+        pressing = cubic(
+            share, t - exposure.seen_time, exposure.force, exposure.force_rate, force[0], force[1]
+        )
         if pressing > 0.0:
             note_pressure(m, k, place - 1, edge, pressing)
             note_pressure(m, k, place, edge, pressing)
@@ -241,11 +245,11 @@ def add_flips(m: Model, y: Floats) -> None:
     """Add what has joined or detached at a root, after `flip_asperities` has found it and before it is recorded."""
     for i in range(list_known(m, y)):
         k = m.work.known[i]
-        own, now = m.work.contact[k], pair_of(m, k, y)
+        contact, now = m.work.contact[k], pair_of(m, k, y)
         row = row_of(m, now.coast, now.number)
         at = spot_at(m, now.place, now.moves)
         bend = 0.5 * m.scene.population.steepness / at.radius
-        for n in range(own.flips):
+        for n in range(contact.flips):
             j = int(m.rows[column(m, k, REMEMBERED) + n])
             arc, kind = m.rows[column(m, k, ARC) + j], int(m.rows[column(m, k, KIND) + j])
             x = arc - at.arc
