@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from gearidae.engine.events.events import guard
 from gearidae.engine.events.record import EVENT_NUMBERS
-from gearidae.engine.events.schedule_knots import next_stop
+from gearidae.engine.events.stops import next_stop
 from gearidae.engine.followers.passages import PASSAGE_NUMBERS
 from gearidae.engine.formulas import adams
 from gearidae.engine.integrate.driver import BLOCK_EVENTS, BLOCK_PASSAGES, Output
@@ -82,7 +82,7 @@ def _restart(place, numbers, again):  # type: ignore[no-untyped-def]
     if again != 0:
         prepare_restart(m, y, yp)
     else:
-        m.work.adams.wanted = m.work.adams.own
+        m.work.adams.wanted = m.work.adams.native_newton
     return restart(Stepper(handles, m, y, yp, dky, spare, a[4 * n :]), next_stop(m))
 
 

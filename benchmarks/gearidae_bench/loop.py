@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from gearidae.engine.events.events import guard
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.record import EVENT_NUMBERS, EVENTS_AT_ONCE
-from gearidae.engine.events.schedule_knots import next_stop
+from gearidae.engine.events.stops import next_stop
 from gearidae.engine.followers.balance import note_changes
 from gearidae.engine.model.record_types import AT_REST, HELD_GEAR
 from gearidae.engine.model.state import MATERIALS, Model

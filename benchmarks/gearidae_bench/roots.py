@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from gearidae.engine.events.events import guard
 from gearidae.engine.events.histories import accept
-from gearidae.engine.events.schedule_knots import next_stop, pass_knot
 from gearidae.engine.events.sliding import follow_sliding
+from gearidae.engine.events.stops import next_stop, pass_knot
 from gearidae.engine.followers import joining
 from gearidae.engine.integrate.driver import Output
 from gearidae.engine.integrate.epilogue import handle

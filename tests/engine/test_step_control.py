@@ -179,7 +179,7 @@ def test_where_the_formulas_are_no_good_ida_has_its_own():
     a = m.work.adams
     state, rates = np.array([16.0, 0.1]), np.zeros(2)
     assert not control.change_wanted(m, state, rates)  # IDA iterates by itself
-    a.own, a.used, a.omega_sq = 1, 1, 4.0
+    a.native_newton, a.used, a.omega_sq = 1, 1, 4.0
     assert not changed(m, state, rates)
     a.limited_steps = control.SWITCH_STEPS + 1
     assert changed(m, state, rates)
@@ -196,7 +196,7 @@ def test_they_come_back_where_they_are_some_good_again():
     m = blank(1e9)
     a = m.work.adams
     state, rates = np.array([16.0, 0.1]), np.zeros(2)
-    a.own, a.omega_sq, a.last_step, a.attempts = 1, 4.0, 0.1, control.SWITCH_STEPS + 1
+    a.native_newton, a.omega_sq, a.last_step, a.attempts = 1, 4.0, 0.1, control.SWITCH_STEPS + 1
     assert changed(m, state, rates)
     for name, value in (("attempts", 3), ("last_step", 0.3)):
         kept = a[name]

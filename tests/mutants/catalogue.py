@@ -406,7 +406,7 @@ MUTANTS = (
     ),
     Mutant(
         "pressure not noted where a contact passes from one place to the next",
-        "engine/followers/exposures/pressure.py",
+        "engine/followers/exposures/contacts.py",
         "        if pressing > 0.0:\n",
         "        if pressing > 1e300:\n",
         ("engine/test_exposures.py::test_sliding_work_and_pressure_are_those_of_the_samples",),
@@ -414,8 +414,8 @@ MUTANTS = (
     Mutant(
         "a contact that comes and turns between two looks at the exposures not counted",
         "engine/followers/exposures/follow.py",
-        "    if own.known == 0 or own.pair != pair or own.time < before:\n",
-        "    if own.pair != pair:\n",
+        "    if exposure.known == 0 or exposure.pair != pair or exposure.time < before:\n",
+        "    if exposure.pair != pair:\n",
         ("engine/test_exposures.py::test_contacts_count_that_come_and_turn_between_two_looks",),
     ),
     Mutant(
@@ -578,7 +578,7 @@ MUTANTS = (
     ),
     Mutant(
         "energy of the attraction across the gap too small by a half",
-        "engine/pairs/attraction.py",
+        "engine/pairs/coverage.py",
         "energy = -2.0 / 3.0 * pull * near",
         "energy = -1.0 / 3.0 * pull * near",
         ("engine/test_attraction.py::test_gears_apart_are_pulled_by_both_flanks_and_along_the_path",),

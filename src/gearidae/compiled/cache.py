@@ -143,7 +143,7 @@ class CacheLocator(getattr(caching, "_CacheLocator", object)):  # type: ignore[m
 def _folder_of(file: str, sources: tuple[Path, ...]) -> str:
     """Name the folder of a module of the named sources; an empty text for a file from elsewhere."""
     path = Path(file).resolve()
-    for root in (each.resolve() for each in (_ROOT, *sources)):
+    for root in (folder.resolve() for folder in (_ROOT, *sources)):
         if path.is_relative_to(root):
             inside = path.parent.relative_to(root.parent) if path != root else Path(path.parent.name)
             return "_".join(inside.parts)

@@ -57,7 +57,7 @@ def signature_of(function: Callable[..., Any]) -> Any:
     answer = hints.pop("return")
     if _is_array(answer):
         raise TypeError(f"{function.__qualname__}: what it returns must not be an array")
-    return _kind(function, answer)(*(_kind(function, one) for one in hints.values()))
+    return _kind(function, answer)(*(_kind(function, hint) for hint in hints.values()))
 
 
 def _without_alias(annotation: Any) -> Any:
@@ -82,5 +82,5 @@ def _kind(function: Callable[..., Any], annotation: Any) -> Any:
     if get_origin(annotation) is np.ndarray:
         return types.float64[::1]
     if get_origin(annotation) is tuple:
-        return types.Tuple([_kind(function, one) for one in get_args(annotation)])  # type: ignore[no-untyped-call]
+        return types.Tuple([_kind(function, part) for part in get_args(annotation)])  # type: ignore[no-untyped-call]
     raise TypeError(f"{function.__qualname__}: {annotation} in its annotations has no type of numba's")

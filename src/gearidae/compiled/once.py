@@ -90,7 +90,7 @@ class AddressedFunction:
         with builder.if_then(empty, likely=False):
             message = f"{self.py_func.__module__}.{self.py_func.__qualname__} has not been made ready"
             context.call_conv.return_user_exc(builder, RuntimeError, (message,))
-        kinds = [context.get_value_type(one) for one in signature.args]
+        kinds = [context.get_value_type(argument) for argument in signature.args]
         kind = ir.FunctionType(context.get_value_type(signature.return_type), kinds)
         return builder.call(builder.inttoptr(address, kind.as_pointer()), values)
 

@@ -39,6 +39,6 @@ def make_ready(part: str) -> None:
     if waiting:
         with _one_at_a_time:
             while waiting:
-                one = waiting[-1]
-                one.make_ready()
-                waiting.remove(one)  # others may have come meanwhile
+                function = waiting[-1]
+                function.make_ready()
+                waiting.remove(function)  # others may have come meanwhile

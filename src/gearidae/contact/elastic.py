@@ -332,14 +332,14 @@ class _Contact:
             motion = (target - here) * np.linalg.solve(
                 self._jacobian(gap, joined, opening), np.ones_like(gap)
             )
-            found = self._solve(target, gap + motion, joined, opening)
+            solution = self._solve(target, gap + motion, joined, opening)
             allowed = 0.1 * min(float(np.abs(motion).max()), sigma) + 1e-3 * sigma
-            if found is not None and np.abs(found - gap - motion).max() <= allowed:
-                stable = np.linalg.slogdet(self._jacobian(found, joined, opening)).sign > 0.0
+            if solution is not None and np.abs(solution - gap - motion).max() <= allowed:
+                stable = np.linalg.slogdet(self._jacobian(solution, joined, opening)).sign > 0.0
             else:
                 stable = False
-            if stable and found is not None:
-                here, gap, joined = target, found, self.layer.advance(found, joined)
+            if stable and solution is not None:
+                here, gap, joined = target, solution, self.layer.advance(solution, joined)
                 step *= 2.0
             else:
                 step = 0.5 * abs(target - here)

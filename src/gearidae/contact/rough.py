@@ -149,13 +149,13 @@ def maximum_tension(
     k = int(np.argmin(pressure(grid)))
     if not 0 < k < grid.size - 1:
         return MaximumTension(0.0, math.nan)
-    found = scipy.optimize.minimize_scalar(
+    minimum = scipy.optimize.minimize_scalar(
         lambda gap: float(pressure(np.array([gap]))[0]),
         bounds=(grid[k - 1], grid[k + 1]),
         options={"xatol": 1e-9},
     )
     unit = surface.asperity_density * heights.unit_load
-    return MaximumTension(-unit * float(found.fun), surface.roughness * float(found.x))
+    return MaximumTension(-unit * float(minimum.fun), surface.roughness * float(minimum.x))
 
 
 def adhesion_loss_per_asperity(surface: Surface, asperity: str = "jkr") -> float:

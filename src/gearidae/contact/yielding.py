@@ -91,7 +91,7 @@ def highest_load(
         surface, share, offset = part
         return share * float(expected_asperities(gap + offset + displacement, radius, width, surface))
 
-    found = force / max(sum(count(0.0, part) for part in parts), 1.0)
+    load = force / max(sum(count(0.0, part) for part in parts), 1.0)
     for part in parts:
         if count(0.0, part) <= 1.0:
             continue
@@ -102,5 +102,5 @@ def highest_load(
             lambda at, part=part: math.log(max(count(at, part), 1e-300)), 0.0, highest, xtol=1e-6 * sigma
         )
         heights = heights_of(surface, asperity)
-        found = max(found, heights.unit_load * float(heights.law.load(pressed / sigma)))
-    return found
+        load = max(load, heights.unit_load * float(heights.law.load(pressed / sigma)))
+    return load

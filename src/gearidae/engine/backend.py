@@ -284,8 +284,8 @@ def solve(
     SceneError
         If the scene is beyond what the engine can do.
     """
-    given = {"run.rtol": rtol, "run.duration": t_end, "run.samples": samples}
-    changes = {key: value for key, value in given.items() if value is not None}
+    arguments = {"run.rtol": rtol, "run.duration": t_end, "run.samples": samples}
+    changes = {key: value for key, value in arguments.items() if value is not None}
     scene = scene.replace(changes) if changes else scene
     columns = columns_of(scene)
     rows = [np.empty((0, len(columns)))]

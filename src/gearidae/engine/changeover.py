@@ -110,14 +110,14 @@ def _limit(carried: Model, m: Model, y: Floats, absent: tuple[bool, ...]) -> Non
 
 def take_over(source: Model, m: Model) -> None:
     """Take the state over, with the histories in the slots that the new model has for them."""
-    slots, own = int(source.scene.slots), int(m.scene.slots)
+    slots, new_slots = int(source.scene.slots), int(m.scene.slots)
     histories = [(k // slots, h.copy()) for k, h in enumerate(source.state.history[: source.scene.histories])]
     assign(m.state, source.state)
     m.state.bound_exceeded = 0
     m.state.history["pair"] = EMPTY
     for coast, h in histories:
         if h.pair != EMPTY:
-            assign(m.state.history[coast * own + (int(h.pair) & (own - 1))], h)
+            assign(m.state.history[coast * new_slots + (int(h.pair) & (new_slots - 1))], h)
     set_all_branches(m)
     carry_exposures(source, m)
 
@@ -162,11 +162,11 @@ def lighten(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
     take_over(source, m)
     m.state.light = 0
     y = state[: new.start.size].copy()
-    slots, own = int(source.scene.slots), int(m.scene.slots)
+    slots, new_slots = int(source.scene.slots), int(m.scene.slots)
     for k in range(int(m.scene.histories)):
         h = m.state.history[k]
         if h.pair != EMPTY:
-            h.joined -= state[first_unknown(source, k // own * slots + (int(h.pair) & (slots - 1)))]
+            h.joined -= state[first_unknown(source, k // new_slots * slots + (int(h.pair) & (slots - 1)))]
             h.stretched = 0
             remember(source, m, k)
     return _handed_over(source, state, new, time, y)

@@ -151,7 +151,7 @@ def knots_at_start(problem: Problem) -> Floats:
         Table of `Events`.
     """
     s, tables = problem.model.scene, problem.model.tables
-    ends = np.concatenate([segment_ends(own, tables) for own in s.schedule])
+    ends = np.concatenate([segment_ends(schedule, tables) for schedule in s.schedule])
     if not ((ends <= s.start) & (s.start - ends <= KNOT_SPACING * s.start)).any():
         return Events.no_table()
     time, kind = float(s.start * s.time_unit), EventKind.SCHEDULE_KNOT
@@ -167,12 +167,12 @@ def _restored(scene: Scene, words: Floats, began: float) -> tuple[Problem, Float
 
 def refuse_other_bodies(old: Scene, new: Scene) -> None:
     """Refuse a scene that differs in what may not."""
-    found = first_difference(old.to_dict(), new.to_dict(), ignored=MAY_CHANGE)
-    if found is not None:
-        key, before, after = found
-        given = "(missing)" if after is None else "(given)" if isinstance(after, dict) else after
+    difference = first_difference(old.to_dict(), new.to_dict(), ignored=MAY_CHANGE)
+    if difference is not None:
+        key, before, after = difference
+        value = "(missing)" if after is None else "(given)" if isinstance(after, dict) else after
         wanted = "left out" if before is None else "given" if isinstance(before, dict) else before
-        raise SceneError(key, given, f"must be {wanted}, as in the run to go on from")
+        raise SceneError(key, value, f"must be {wanted}, as in the run to go on from")
 
 
 def _same_contact(old: Problem, new: Problem) -> Problem:
@@ -217,12 +217,15 @@ def _same_materials(old: Model, new: Model) -> bool:
 def _materials(m: Model) -> Floats:
     """What of the materials contacts depend on, in roughnesses and newtons, and fractions by tooth and place."""
     numbers: list[float] = []
-    for own in m.scene.coverage:
-        numbers += [own.teeth, *m.tables[own.values_at : own.values_at + own.teeth * own.places]]
-    for own in m.scene.material:
-        force = own.force_scale * m.scene.force_unit
-        pull = own.attraction * m.scene.force_unit
-        numbers += [force, own.stretch_limit, own.joining_energy, own.gap_offset, pull]
+    for record in m.scene.coverage:
+        numbers += [
+            record.teeth,
+            *m.tables[record.values_at : record.values_at + record.teeth * record.places],
+        ]
+    for record in m.scene.material:
+        force = record.force_scale * m.scene.force_unit
+        pull = record.attraction * m.scene.force_unit
+        numbers += [force, record.stretch_limit, record.joining_energy, record.gap_offset, pull]
     return np.array(numbers)
 
 
@@ -243,7 +246,7 @@ def _carry_contacts(old: Problem, old_y: Floats, new: Problem, y: Floats, *, cha
     same_nodes = _carry_deflections(source, old_y, m, y)
     if m.scene.nodes > 0 and (changed or not same_nodes):
         if changed and source.scene.nodes > 0:
-            join_anew(m, y, tuple(float(own.stretch_limit) == 0.0 for own in source.scene.material))
+            join_anew(m, y, tuple(float(material.stretch_limit) == 0.0 for material in source.scene.material))
         else:
             settle_nodes(m, float(m.state.time), y)
         note_gaps(m, y)

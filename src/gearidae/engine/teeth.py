@@ -90,7 +90,9 @@ class _Reader:
 
     def __init__(self, scene: Scene, begin: float, samples: Iterable[int]) -> None:
         self._scene, self._begin, self._samples = scene, begin, deque(samples)
-        self._materials = [MATERIAL_NAMES.index(one.name) for one in scene.materials() if one.share > 0.0]
+        self._materials = [
+            MATERIAL_NAMES.index(material.name) for material in scene.materials() if material.share > 0.0
+        ]
         self.states: list[MeshState] = []
 
     @property

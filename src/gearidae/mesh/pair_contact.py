@@ -228,6 +228,6 @@ def asperity_stiffness(scene: Scene) -> float:
     For JKR ``1.2 E* a0``; of one pressed by a roughness where nothing adheres.
     """
     surface = scene.surface
-    radius = max(zero_load_radius(one.surface) for one in scene.materials() if one.share > 0.0)
+    radius = max(zero_load_radius(material.surface) for material in scene.materials() if material.share > 0.0)
     modulus = contact_modulus(surface.youngs_modulus, surface.poisson_ratio)
     return 1.2 * modulus * radius or 2.0 * modulus * math.sqrt(surface.asperity_radius * surface.roughness)

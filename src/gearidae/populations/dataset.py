@@ -50,26 +50,26 @@ def population(scene: Scene) -> xr.Dataset:
             "must be discrete: statistical ones are no asperities of their own",
         )
     flanks = flanks_of(scene)
-    counts = [one.arc.size for one in flanks]
+    counts = [flank.arc.size for flank in flanks]
     along = "arc" if scene.gears is not None else "x"
-    sides = [covered_sides(scene, one, one.tooth + one.flank) for one in flanks]
+    sides = [covered_sides(scene, flank, flank.tooth + flank.flank) for flank in flanks]
     columns = {
-        "tooth": (np.repeat([one.tooth for one in flanks], counts), "1", "tooth of the pinion"),
+        "tooth": (np.repeat([flank.tooth for flank in flanks], counts), "1", "tooth of the pinion"),
         "flank": (
-            np.repeat([one.flank for one in flanks], counts),
+            np.repeat([flank.flank for flank in flanks], counts),
             "1",
             "0 for the drive flank, 1 for the coast flank",
         ),
-        along: (_joined([one.arc for one in flanks]), "m", "place along the flank"),
-        "height": (_joined([one.height for one in flanks]), "m", "height above the mean plane"),
-        "radius": (_joined([one.radius for one in flanks]), "m", "radius of the tip"),
-        "q": (_joined([one.q for one in flanks]), "1", "coverage number"),
-        "coated": (_joined([one[0] for one in sides]), "1", "1 where the monolayer covers it"),
+        along: (_joined([flank.arc for flank in flanks]), "m", "place along the flank"),
+        "height": (_joined([flank.height for flank in flanks]), "m", "height above the mean plane"),
+        "radius": (_joined([flank.radius for flank in flanks]), "m", "radius of the tip"),
+        "q": (_joined([flank.q for flank in flanks]), "1", "coverage number"),
+        "coated": (_joined([side[0] for side in sides]), "1", "1 where the monolayer covers it"),
     }
     if scene.coating.pairing == "independent":
-        columns["q2"] = (_joined([one.q2 for one in flanks]), "1", "coverage number of the gear's side")
+        columns["q2"] = (_joined([flank.q2 for flank in flanks]), "1", "coverage number of the gear's side")
         columns["gear_coated"] = (
-            _joined([one[1] for one in sides]),
+            _joined([side[1] for side in sides]),
             "1",
             "1 where the monolayer covers the gear's side",
         )

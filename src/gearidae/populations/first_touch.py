@@ -32,23 +32,23 @@ def first_touch(scene: GearScene) -> float:
         pair; with radii that differ, the joining distance d_on is that of the largest tip of a flank.
     """
     geometry, sigma, flanks = scene.geometry, scene.surface.roughness, flanks_of(scene)
-    by_name = {one.name: one for one in scene.materials()}
+    by_name = {material.name: material for material in scene.materials()}
     whole, phase = divmod(scene.initial.mesh_phase, 1.0)
     widest = -math.inf
     for pair in range(math.floor(phase - geometry.contact_ratio) - 1, 3):
         xi = (phase - pair) * geometry.base_pitch
         tooth = int(pair + whole)
-        one = flanks[2 * (tooth % geometry.pinion_teeth)]
-        if not one.arc.size:
+        flank = flanks[2 * (tooth % geometry.pinion_teeth)]
+        if not flank.arc.size:
             continue
         reach = {}
-        for number in np.unique(material := materials_at(scene, one, tooth)).tolist():
-            own = by_name[MATERIAL_NAMES[number]]
-            largest = own.surface.model_copy(update={"asperity_radius": float(one.radius.max())})
-            reach[number] = law_of(scene.contact.asperity, largest).join * sigma - own.gap_offset
+        for number in np.unique(material := materials_at(scene, flank, tooth)).tolist():
+            surface = by_name[MATERIAL_NAMES[number]]
+            largest = surface.surface.model_copy(update={"asperity_radius": float(flank.radius.max())})
+            reach[number] = law_of(scene.contact.asperity, largest).join * sigma - surface.gap_offset
         joins = np.array([reach[number] for number in material.tolist()])
-        x = one.arc - float(flank_arc(geometry, xi))
+        x = flank.arc - float(flank_arc(geometry, xi))
         bend = x**2 / (2.0 * float(curvature_radii(geometry, xi)[2]))
         relief = float(separation(geometry, xi, scene.mesh.tip_relief_radius)[0])
-        widest = max(widest, float((one.height + joins - bend).max()) - relief)
+        widest = max(widest, float((flank.height + joins - bend).max()) - relief)
     return widest + _BEYOND * sigma

@@ -165,11 +165,11 @@ def _listed(
     for tooth in range(teeth):
         for flank in range(2 if gears else 1):
             here = (np.isnan(numbers[:, 5]) | (numbers[:, 5] == tooth)) & ((named < 0) | (named == flank))
-            arc, height, own, q, q2, _ = numbers[here].T
+            arc, height, radii, q, q2, _ = numbers[here].T
             rng = np.random.default_rng([seed, tooth, flank])
-            q, q2 = (np.where(np.isnan(one), rng.random(one.size), one) for one in (q, q2))
-            own = np.where(np.isnan(own), radius, own)
-            flanks.append(FlankAsperities(tooth, flank, arc, height, own, q, q2).sorted())
+            q, q2 = (np.where(np.isnan(values), rng.random(values.size), values) for values in (q, q2))
+            radii = np.where(np.isnan(radii), radius, radii)
+            flanks.append(FlankAsperities(tooth, flank, arc, height, radii, q, q2).sorted())
     return tuple(flanks)
 
 
@@ -186,8 +186,8 @@ def flanks_digest(flanks: tuple[FlankAsperities, ...]) -> str:
         Hexadecimal, of the number of asperities and the bits of their columns, flank by flank.
     """
     digest = hashlib.sha256()
-    for one in flanks:
-        digest.update(np.array([one.arc.size], "<i8").tobytes())
-        for column in one[2:]:
+    for asperities in flanks:
+        digest.update(np.array([asperities.arc.size], "<i8").tobytes())
+        for column in asperities[2:]:
             digest.update(np.ascontiguousarray(column, "<f8").tobytes())
     return digest.hexdigest()

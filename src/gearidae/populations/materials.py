@@ -18,15 +18,15 @@ MATERIAL_OF_SIDES: Final = np.array([[_BARE, _MIXED], [_MIXED, _COATED]])
 """Index of the material by whether the pinion's side and the gear's are covered."""
 
 
-def along_path(scene: Scene, one: FlankAsperities) -> NDArray[np.float64]:
+def along_path(scene: Scene, flank: FlankAsperities) -> NDArray[np.float64]:
     """Return the places of a flank's asperities as shares of the path of contact; 0 of a roller."""
     if scene.gears is None:
-        return np.zeros_like(one.arc)
+        return np.zeros_like(flank.arc)
     geometry = scene.geometry
-    return np.clip(place_of_arc(geometry, one.arc) / geometry.path_length, 0.0, 1.0)
+    return np.clip(place_of_arc(geometry, flank.arc) / geometry.path_length, 0.0, 1.0)
 
 
-def covered_sides(scene: Scene, one: FlankAsperities, gear_tooth: int) -> tuple[Bools, Bools]:
+def covered_sides(scene: Scene, flank: FlankAsperities, gear_tooth: int) -> tuple[Bools, Bools]:
     """Say at which asperities the monolayer covers the pinion's side, and the gear's.
 
     Parameters
@@ -39,12 +39,12 @@ def covered_sides(scene: Scene, one: FlankAsperities, gear_tooth: int) -> tuple[
     pinion, gear : ndarray of bool, shape (n,)
         The same for patches, which cover both sides.
     """
-    places = along_path(scene, one)
+    places = along_path(scene, flank)
     pinion, gear = scene.coating.tables
-    first = one.q < fraction_at(pinion, one.tooth, places)
+    first = flank.q < fraction_at(pinion, flank.tooth, places)
     if scene.coating.pairing == "patches":
         return first, first
-    return first, one.q2 < fraction_at(gear, gear_tooth, places)
+    return first, flank.q2 < fraction_at(gear, gear_tooth, places)
 
 
 def by_gear_tooth(scene: Scene) -> bool:
@@ -52,7 +52,7 @@ def by_gear_tooth(scene: Scene) -> bool:
     return len(scene.coating.gear_table) > 1
 
 
-def materials_met(scene: Scene, one: FlankAsperities) -> NDArray[np.int64]:
+def materials_met(scene: Scene, flank: FlankAsperities) -> NDArray[np.int64]:
     """Return the index of the material at each asperity, for all teeth of the gear.
 
     Returns
@@ -62,12 +62,12 @@ def materials_met(scene: Scene, one: FlankAsperities) -> NDArray[np.int64]:
         it is bare.
     """
     if not by_gear_tooth(scene):
-        return materials_at(scene, one, 0)[None]
-    first = covered_sides(scene, one, 0)[0].astype(np.int64)
+        return materials_at(scene, flank, 0)[None]
+    first = covered_sides(scene, flank, 0)[0].astype(np.int64)
     return MATERIAL_OF_SIDES[first, 1 - np.arange(2)[:, None]]
 
 
-def materials_at(scene: Scene, one: FlankAsperities, gear_tooth: int) -> NDArray[np.int64]:
+def materials_at(scene: Scene, flank: FlankAsperities, gear_tooth: int) -> NDArray[np.int64]:
     """Return the index of the material at each asperity, among `gearidae.scene.MATERIAL_NAMES`; shape (n,)."""
-    first, second = covered_sides(scene, one, gear_tooth)
+    first, second = covered_sides(scene, flank, gear_tooth)
     return MATERIAL_OF_SIDES[first.astype(np.int64), second.astype(np.int64)]

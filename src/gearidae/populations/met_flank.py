@@ -57,13 +57,13 @@ def met_flank(scene: GearScene, pair: int, flank: Flank) -> MetFlank:
         With ``contact.roughness = "discrete"``.
     """
     coast = flank == Flank.COAST
-    tooth, gear_tooth = (int(one) for one in met_teeth(pair, coast=coast))
+    tooth, gear_tooth = (int(number) for number in met_teeth(pair, coast=coast))
     which = tooth % scene.gears.pinion_teeth, int(coast)
-    one = next(one for one in flanks_of(scene) if (one.tooth, one.flank) == which)
-    material = materials_at(scene, one, gear_tooth)
-    recess = {each.name: each.gap_offset for each in scene.materials()}
+    asperities = next(drawn for drawn in flanks_of(scene) if (drawn.tooth, drawn.flank) == which)
+    material = materials_at(scene, asperities, gear_tooth)
+    recess = {surface.name: surface.gap_offset for surface in scene.materials()}
     recesses = np.array([recess.get(name, 0.0) for name in MATERIAL_NAMES])
-    return MetFlank(one.arc, one.height - recesses[material], one.radius, material)
+    return MetFlank(asperities.arc, asperities.height - recesses[material], asperities.radius, material)
 
 
 def contact_arc(scene: GearScene, place: float) -> float:

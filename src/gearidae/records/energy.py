@@ -99,13 +99,13 @@ ENERGY_NOW: Final = (
 """Quantities of a look at the balance: changes of energies up to the present state, and parts of the bound."""
 
 TERMS: Final[Mapping[str, Quantity]] = {
-    name: each for each in (*ENERGY_SUMS, *ENERGY_NOW) if each.sign for name in each.names
+    name: term for term in (*ENERGY_SUMS, *ENERGY_NOW) if term.sign for name in term.names
 }
 """Terms of the balance by their names in an archive."""
-SLIDING: Final = tuple(name for each in ENERGY_SUMS if each.name == "sliding" for name in each.names)
+SLIDING: Final = tuple(name for term in ENERGY_SUMS if term.name == "sliding" for name in term.names)
 """Names of what is summed up with the energies and is none."""
 LOSSES: Final[Mapping[str, Quantity]] = {
-    name: each for name, each in TERMS.items() if each in ENERGY_SUMS and each.sign < 0
+    name: term for name, term in TERMS.items() if term in ENERGY_SUMS and term.sign < 0
 }
 """Those that are lost."""
 
@@ -143,13 +143,13 @@ class EnergyBalance(Totals):
     @property
     def residual(self) -> float:
         """Works minus losses and changes of the energies [J]."""
-        return float(sum(each.sign * self[name] for name, each in TERMS.items()))
+        return float(sum(term.sign * self[name] for name, term in TERMS.items()))
 
     @property
     def efficiency(self) -> float:
         """What drag and dry resistance at the gear have taken over all that has been lost [1]; NaN without work."""
         lost = sum(self[name] for name in LOSSES)
-        useful = sum(self[name] for name, each in LOSSES.items() if each.group == "useful")
+        useful = sum(self[name] for name, term in LOSSES.items() if term.group == "useful")
         return float(useful / lost) if lost > 0.0 and self.drive_work > 0.0 else math.nan
 
     @property

@@ -81,7 +81,7 @@ ROLLER_EXTREMES: Final = (*FORCE_EXTREMES, *ROLLER_NOW, *ASPERITY_COUNTS)
 GEAR_EXTREMES: Final = (*SPEED_EXTREMES, *SPEEDS_NOW, *STANDING_NOW, *FORCE_EXTREMES, *ASPERITY_COUNTS)
 """All extremes of a roller, and of gears."""
 _MISSING: Final[Mapping[str, Any]] = {
-    name: 0 if each.kind == INT else math.nan for each in GEAR_EXTREMES for name in each.names
+    name: 0 if field.kind == INT else math.nan for field in GEAR_EXTREMES for name in field.names
 }
 
 

@@ -31,8 +31,8 @@ SINCE_LAST: Final = (
     ),
 )
 """What begins anew with each passage of a flank."""
-SUMS: Final = tuple(each for each in ENERGY_SUMS if each.sign)
-CHANGES: Final = tuple(each for each in ENERGY_NOW if each.sign)
+SUMS: Final = tuple(term for term in ENERGY_SUMS if term.sign)
+CHANGES: Final = tuple(term for term in ENERGY_NOW if term.sign)
 """Running sums: all terms of the energy balance."""
 COLUMNS: Final = (*EXIT, *SINCE_LAST, *SUMS, *CHANGES)
 """Quantities of a passage, in the order of its row."""
@@ -49,11 +49,11 @@ class Passages(Rows):
     field = "passages"
     columns: ClassVar[Mapping[str, RowColumn]] = {
         **{
-            each.name: RowColumn(np.int64 if each.kind == INT else np.float64)
-            for each in (*EXIT, *SINCE_LAST)
+            term.name: RowColumn(np.int64 if term.kind == INT else np.float64)
+            for term in (*EXIT, *SINCE_LAST)
         },
         "flank": RowColumn(FLAG),
-        **{name: RowColumn(missing=math.nan) for each in (*SUMS, *CHANGES) for name in each.names},
+        **{name: RowColumn(missing=math.nan) for term in (*SUMS, *CHANGES) for name in term.names},
     }
 
 

@@ -154,11 +154,11 @@ flag = partial(Quantity, kind=INT, high=1)
 
 def convert(fields: Iterable[Quantity], record: Any, force: float, time: float) -> None:
     """Put a record into other units of force and time, in place, for their ratios, old over new."""
-    for each in fields:
-        if isinstance(each.kind, tuple):
-            convert(each.kind, record[each.name], force, time)
-        elif (ratio := each.unit.ratio(force, time)) != 1.0:
-            record[each.name] *= ratio
+    for field in fields:
+        if isinstance(field.kind, tuple):
+            convert(field.kind, record[field.name], force, time)
+        elif (ratio := field.unit.ratio(force, time)) != 1.0:
+            record[field.name] *= ratio
 
 
 def in_si(quantities: Iterable[Quantity], record: Any, scene: Any) -> dict[str, Any]:
@@ -172,11 +172,11 @@ def in_si(quantities: Iterable[Quantity], record: Any, scene: Any) -> dict[str, 
         The second holds the units, as for `Unit.in_si`.
     """
     numbers: dict[str, Any] = {}
-    for each in quantities:
-        unit = each.unit.in_si(scene)
-        for name, value in zip(each.names, np.ravel(record[each.name]).tolist(), strict=True):
+    for quantity in quantities:
+        unit = quantity.unit.in_si(scene)
+        for name, value in zip(quantity.names, np.ravel(record[quantity.name]).tolist(), strict=True):
             # the same object for each missing number, so that equal numbers compare equal
-            numbers[name] = value if each.kind == INT else math.nan if math.isnan(value) else unit * value
+            numbers[name] = value if quantity.kind == INT else math.nan if math.isnan(value) else unit * value
     return numbers
 
 

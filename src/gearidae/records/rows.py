@@ -72,7 +72,9 @@ class Rows:
     @classmethod
     def of_table(cls, table: NDArray[np.float64]) -> Self:
         """Make rows of a table, shape (n, columns), as a driver writes it."""
-        return cls(*(table[:, place].astype(each.dtype) for place, each in enumerate(cls.columns.values())))
+        return cls(
+            *(table[:, place].astype(column.dtype) for place, column in enumerate(cls.columns.values()))
+        )
 
     @classmethod
     @cache

@@ -161,14 +161,16 @@ def _array(path: Path) -> NDArray[np.float64]:
 def _text(path: Path, unit: str | None) -> Scan:
     """Read numbers in lines, with what remarks above them say of the unit of the heights and the extent."""
     table = open_table(path, largest=_LARGEST)
-    found = [match for text in table.remarks if (match := _SAID.fullmatch(text))]
-    said = {name: match["said"] for match in found for name in ("width", "height", "unit") if match[name]}
-    own = said.get("unit") or next(
+    matches = [match for text in table.remarks if (match := _SAID.fullmatch(text))]
+    said = {name: match["said"] for match in matches for name in ("width", "height", "unit") if match[name]}
+    unit_of_file = said.get("unit") or next(
         (match[1] for text in table.remarks if (match := _HEIGHTS.match(text))), None
     )
-    factor = _factor(unit or own or "m")
-    if unit is not None and own is not None and not math.isclose(factor, _factor(own)):
-        raise SceneError("unit", unit, f"the heights are in {own}, as {path.name} says: leave the unit out")
+    factor = _factor(unit or unit_of_file or "m")
+    if unit is not None and unit_of_file is not None and not math.isclose(factor, _factor(unit_of_file)):
+        raise SceneError(
+            "unit", unit, f"the heights are in {unit_of_file}, as {path.name} says: leave the unit out"
+        )
     extent = [_length(path, said[name]) for name in ("height", "width") if name in said]
     heights = _without_labels(table, table.numbers(holes=True))
     return Scan(heights * factor, (extent[0], extent[-1]) if len(extent) == 2 else None)
@@ -239,8 +241,8 @@ def _by_surface_topography(path: Path, unit: str | None) -> Scan:
                 if "physical_sizes" not in str(error):
                     raise
                 scan, sized = read_topography(str(path), physical_sizes=(1.0, 1.0)), False
-            own = scan.unit
-            scan = scan if own is None else scan.to_unit("m")
+            unit_of_file = scan.unit
+            scan = scan if unit_of_file is None else scan.to_unit("m")
             heights = np.ma.array(scan.heights(), dtype=np.float64, copy=True)
             sizes = scan.physical_sizes
     except Exception as error:  # each of its forty readers fails in its own way
@@ -251,12 +253,14 @@ def _by_surface_topography(path: Path, unit: str | None) -> Scan:
         ) from error
     if np.ndim(heights) != 2:
         raise SceneError("surface scan", path, "holds a line scan; a map is needed")
-    if own is not None and unit is not None:
-        raise SceneError("unit", unit, f"is for files without a unit; {path.name} carries its own, {own}")
-    if own is None and unit is None:
+    if unit_of_file is not None and unit is not None:
+        raise SceneError(
+            "unit", unit, f"is for files without a unit; {path.name} carries its own, {unit_of_file}"
+        )
+    if unit_of_file is None and unit is None:
         raise SceneError(
             "unit", "(none)", f"is needed: {path.name} does not say in which unit its heights are"
         )
     factor = 1.0 if unit is None else _factor(unit)
-    extent = (float(sizes[0]), float(sizes[1])) if sized and own is not None else None
+    extent = (float(sizes[0]), float(sizes[1])) if sized and unit_of_file is not None else None
     return Scan(np.ma.filled(heights, np.nan) * factor, extent)

@@ -66,7 +66,7 @@ def band_limited(amplitudes: Floats, size: tuple[float, float], cutoff: float) -
         Shortest wavelength that is kept [m].
     """
     shape = grid_points(size, cutoff)
-    kept = tuple(slice(min(one, other)) for one, other in zip(amplitudes.shape, shape, strict=True))
+    kept = tuple(slice(min(whole, other)) for whole, other in zip(amplitudes.shape, shape, strict=True))
     waves = np.zeros(shape)
     waves[kept] = amplitudes[kept]
     rows, columns = (

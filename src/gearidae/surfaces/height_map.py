@@ -175,14 +175,14 @@ def _filled(levelled: Floats, holes: Flags) -> Floats:
     filled = np.where(holes, 0.0, levelled)
     padded_number = np.pad(number, 1, constant_values=-2)  # -2: outside, -1: measured
     padded_height = np.pad(filled, 1)
-    own = np.argwhere(holes) + 1
-    diagonal = np.zeros(len(own))
-    right = np.zeros(len(own))
-    places = [np.arange(len(own))]
-    others = [np.arange(len(own))]
+    points = np.argwhere(holes) + 1
+    diagonal = np.zeros(len(points))
+    right = np.zeros(len(points))
+    places = [np.arange(len(points))]
+    others = [np.arange(len(points))]
     entries: list[Floats] = []
     for step in ((0, 1), (0, -1), (1, 0), (-1, 0)):
-        rows, columns = (own + step).T
+        rows, columns = (points + step).T
         neighbour = padded_number[rows, columns]
         diagonal += neighbour != -2
         right += np.where(neighbour == -1, padded_height[rows, columns], 0.0)

@@ -60,14 +60,14 @@ def line_noise(heights: Floats, size: tuple[float, float]) -> tuple[float, float
     steps = [_medians(heights), _medians(heights.T)]
     # variances of slopes, and of means over as long a line
     scale = [size[1 - axis] * (heights.shape[axis] / size[axis]) ** 2 for axis in (0, 1)]
-    variance = [float(each.var()) for each in steps]
-    found = []
+    variance = [float(step.var()) for step in steps]
+    noise = []
     for axis in (0, 1):
         expected = variance[1 - axis] * scale[1 - axis] / scale[axis]
         white = variance[axis] > 0.0 and float(np.diff(steps[axis]).var()) > _WHITE * variance[axis]
         noisy = white and variance[axis] > _STRONGER * expected
-        found.append(float(np.sqrt(0.5 * (variance[axis] - expected))) if noisy else 0.0)
-    return found[0], found[1]
+        noise.append(float(np.sqrt(0.5 * (variance[axis] - expected))) if noisy else 0.0)
+    return noise[0], noise[1]
 
 
 def repeated_lines(heights: Floats) -> int:

@@ -135,18 +135,18 @@ def asperities(surface: HeightMap, cutoff: float) -> xr.Dataset:
     """
     field = band_limited(cosine_sum(surface.heights), surface.size, cutoff)
     wanted = _wanted(surface, field, cutoff)
-    found = find_summits(field, wanted)
-    order = np.argsort(found.places[1], kind="stable")
+    summits = find_summits(field, wanted)
+    order = np.argsort(summits.places[1], kind="stable")
     edges, sides = [], []
     for axis, step in enumerate(field.spacing):
         inside = np.flatnonzero(wanted.any(axis=1 - axis))
         edges.append((inside[0] - 0.5) * step)
         sides.append(float((inside[-1] + 1 - inside[0]) * step))
     columns = {
-        "along": (found.places[1] - edges[1], "place along the columns' index"),
-        "across": (found.places[0] - edges[0], "place along the rows' index"),
-        "height": (found.heights - found.heights.mean(), "height above the summits' mean plane"),
-        "radius": (1.0 / found.curvatures, "radius of the tip"),
+        "along": (summits.places[1] - edges[1], "place along the columns' index"),
+        "across": (summits.places[0] - edges[0], "place along the rows' index"),
+        "height": (summits.heights - summits.heights.mean(), "height above the summits' mean plane"),
+        "radius": (1.0 / summits.curvatures, "radius of the tip"),
     }
     return xr.Dataset(
         {

@@ -164,18 +164,24 @@ def _named(parameters: object) -> tuple[Parameter, ...]:
         raise SceneError(
             "parameters", parameters, f"must be a whole number in 0..{MOST_PARAMETERS} or a list of names"
         )
-    named = tuple(one if isinstance(one, Parameter) else Parameter(one) for one in parameters)
-    names = [one.name for one in named]
-    for one in names:
-        if not isinstance(one, str) or not re.fullmatch(r"[^\W\d]\w*", one) or one in ("name", "parameters"):
+    named = tuple(
+        parameter if isinstance(parameter, Parameter) else Parameter(parameter) for parameter in parameters
+    )
+    names = [parameter.name for parameter in named]
+    for parameter in names:
+        if (
+            not isinstance(parameter, str)
+            or not re.fullmatch(r"[^\W\d]\w*", parameter)
+            or parameter in ("name", "parameters")
+        ):
             raise SceneError(
                 "parameters",
-                one,
+                parameter,
                 "must be a word of letters, digits and underscores, not name and not parameters",
             )
     if len(set(names)) < len(names):
         raise SceneError("parameters", ", ".join(names), "must be names that differ")
-    if any(one.over_time for one in named[:-1]):
+    if any(parameter.over_time for parameter in named[:-1]):
         raise SceneError("parameters", ", ".join(names), "only the last one may be a schedule")
     return named
 

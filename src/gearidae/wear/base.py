@@ -71,20 +71,20 @@ class LossLaw(ABC):
 
     def __post_init__(self) -> None:
         """Read the parameters."""
-        for each in fields(self):
-            if "quantity" not in each.metadata:
+        for entry in fields(self):
+            if "quantity" not in entry.metadata:
                 continue
-            value = getattr(self, each.name)
+            value = getattr(self, entry.name)
             try:
-                number = each.metadata["quantity"].read(value)
+                number = entry.metadata["quantity"].read(value)
             except ValueError as error:
-                raise SceneError(f"{self.name}.{each.name}", value, str(error)) from None
-            object.__setattr__(self, each.name, number)
+                raise SceneError(f"{self.name}.{entry.name}", value, str(error)) from None
+            object.__setattr__(self, entry.name, number)
 
     @classmethod
     def parameter_units(cls) -> dict[str, str]:
         """Return the SI units of the parameters, without those of a nested law."""
-        known = {each.name: each.metadata.get("quantity") for each in fields(cls)}
+        known = {entry.name: entry.metadata.get("quantity") for entry in fields(cls)}
         return {name: quantity.unit for name, quantity in known.items() if quantity is not None}
 
     @abstractmethod
@@ -110,4 +110,4 @@ class LossLaw(ABC):
 
     def describe(self) -> dict[str, Any]:
         """Return name and parameters, ready for JSON."""
-        return {"name": self.name, **{each.name: getattr(self, each.name) for each in fields(self)}}
+        return {"name": self.name, **{entry.name: getattr(self, entry.name) for entry in fields(self)}}

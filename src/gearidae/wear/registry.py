@@ -79,11 +79,11 @@ def loss_law(name: str, **parameters: Any) -> LossLaw:
     2.0
     """
     kind = _LAWS.find(name)
-    known = {each.name: each for each in fields(kind)}
+    known = {field.name: field for field in fields(kind)}
     for key, value in parameters.items():
         if key not in known:
             raise SceneError(f"{name}.{key}", value, "is no parameter of it; it takes " + ", ".join(known))
-    for key, each in known.items():
+    for key, field in known.items():
         if key not in parameters:
-            raise SceneError(f"{name}.{key}", "(missing)", f"is required: {each.metadata['description']}")
+            raise SceneError(f"{name}.{key}", "(missing)", f"is required: {field.metadata['description']}")
     return kind(**parameters)

@@ -51,7 +51,7 @@ def loading_derivatives(gap: Floats, law: AsperityLaw, kernel: Kernel) -> Floats
     if law.join > 0.0:
         edges = np.linspace(-law.join, 0.0, math.ceil(law.join / PANEL) + 1)
         rule = law.nodes(edges[:-1], edges[1:], *gauss_rule(CLOSE))
-        offset, weight = (each.reshape(1, -1) for each in rule)
+        offset, weight = (numbers.reshape(1, -1) for numbers in rule)
         result += _integrals(gap, (-law.join, law.join), offset, weight, kernel)[:, :, 0]
     return result
 
@@ -70,7 +70,7 @@ def stretched_derivatives(joined: Floats, law: AsperityLaw, v: Floats, kernel: K
     low = np.maximum(-stretch - law.join, -law.detach)
     edges = np.linspace(low, -law.join, 2 + int(limit / PANEL), axis=1)
     rule = law.nodes(edges[:, :-1], edges[:, 1:], *gauss_rule(STRETCHED))
-    delta, weight = (each.reshape(len(v), -1) for each in rule)
+    delta, weight = (numbers.reshape(len(v), -1) for numbers in rule)
     return _integrals(joined, (-law.join, limit), stretch[:, None] + delta, weight, kernel)
 
 
@@ -95,8 +95,8 @@ def _integrals(
     which = np.clip(place.astype(int), 0, panels - 1)
     result = np.zeros((4, len(knots), len(offset)))
     for k in range(panels):
-        own = which == k
-        weights = _at_places(np.where(own, place - k, 0.0), np.where(own, weight, 0.0))
+        inside = which == k
+        weights = _at_places(np.where(inside, place - k, 0.0), np.where(inside, weight, 0.0))
         result += kernel_at(kernel, knots[:, None] + (low + panel * (k + _places()))) @ weights.T
     return result
 

@@ -99,7 +99,7 @@ add_lanes: Any = intrinsic(_add_lanes)
 """Add eight numbers from ``start`` on, times a factor, to those of another array from ``place`` on."""
 
 
-def _product_of_lanes(typing: Any, one: Any, place: Any, other: Any, start: Any) -> Any:
+def _product_of_lanes(typing: Any, numbers: Any, place: Any, other: Any, start: Any) -> Any:
     """Type and code of `product_of_lanes`."""
 
     def evaluate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
@@ -116,7 +116,7 @@ def _product_of_lanes(typing: Any, one: Any, place: Any, other: Any, start: Any)
             total = builder.fadd(low, high)
         return builder.extract_element(total, ir.Constant(ir.IntType(32), 0))
 
-    return types.float64(one, types.uintp, other, types.uintp), evaluate
+    return types.float64(numbers, types.uintp, other, types.uintp), evaluate
 
 
 product_of_lanes: Any = intrinsic(_product_of_lanes)

@@ -59,10 +59,10 @@ def begin_deflections(m: Model, t: float, y: Floats) -> None:
     """Begin at a time at which nothing is known but the deflections."""
     n = m.scene.nodes
     for k in range(m.scene.histories):
-        own, h = m.work.settling[k], m.state.history[k]
-        own.evaluated = own.before_known = 0
-        own.last_known = 0 if h.pair == EMPTY else 1
-        own.last_time, own.last_gap, own.last_rate = t, h.gap, 0.0
+        settling, h = m.work.settling[k], m.state.history[k]
+        settling.evaluated = settling.before_known = 0
+        settling.last_known = 0 if h.pair == EMPTY else 1
+        settling.last_time, settling.last_gap, settling.last_rate = t, h.gap, 0.0
         first, last, tangent = first_unknown(m, k), row(m, k, LAST), row(m, k, LAST_TANGENT)
         for i in range(n):
             last[i], tangent[i] = y[first + i], 0.0
@@ -101,7 +101,7 @@ def settle_pair(
     gap, rate, length : float
         The pair's gap, gap rate and contact length.
     """
-    n, first, own = m.scene.nodes, first_unknown(m, k), m.work.settling[k]
+    n, first, settling = m.scene.nodes, first_unknown(m, k), m.work.settling[k]
     deflection, tangent = row(m, k, DEFLECTION), row(m, k, TANGENT)
     step, follow = equation_space(m, STEP), equation_space(m, FOLLOW)
     sums = equation_space(m, SUMS)
@@ -128,7 +128,7 @@ def settle_pair(
         force -= length * sums[i] * step[i]
         slope += length * sums[i] * follow[i]
         deflection[i], tangent[i] = y[first + i], follow[i]
-    own.evaluated, own.known, own.time, own.gap = 1, int(known), t, gap
+    settling.evaluated, settling.known, settling.time, settling.gap = 1, int(known), t, gap
     if not settled:
         m.work.unsettled = 1
     return force, slope
@@ -154,47 +154,51 @@ def _finish_pair(
     m: Model, k: int, known: bool, t: float, y: Floats, gap: float, rate: float, length: float
 ) -> None:
     """Set a pair's deflections at the end of a step and note them; the parameters are those of `settle_pair`."""
-    own = m.work.settling[k]
-    if own.evaluated == 0 or abs(own.time - t) > ROUNDING * abs(t):
+    settling = m.work.settling[k]
+    if settling.evaluated == 0 or abs(settling.time - t) > ROUNDING * abs(t):
         settle_pair(m, k, known, t, y, gap, rate, length)
     first, deflection, tangent = first_unknown(m, k), row(m, k, DEFLECTION), row(m, k, TANGENT)
     last, last_tangent = row(m, k, LAST), row(m, k, LAST_TANGENT)
     before, before_tangent = row(m, k, BEFORE), row(m, k, BEFORE_TANGENT)
     for i in range(m.scene.nodes):
         before[i], before_tangent[i] = last[i], last_tangent[i]
-        last[i] = deflection[i] + tangent[i] * (gap - own.gap)
+        last[i] = deflection[i] + tangent[i] * (gap - settling.gap)
         last_tangent[i] = tangent[i]
         y[first + i] = last[i]
-    own.before_known = own.last_known if known else 0
-    own.before_time, own.before_gap, own.before_rate = own.last_time, own.last_gap, own.last_rate
-    own.last_known, own.last_time, own.last_gap, own.last_rate = 1, t, gap, rate
-    own.evaluated = 0
+    settling.before_known = settling.last_known if known else 0
+    settling.before_time, settling.before_gap, settling.before_rate = (
+        settling.last_time,
+        settling.last_gap,
+        settling.last_rate,
+    )
+    settling.last_known, settling.last_time, settling.last_gap, settling.last_rate = 1, t, gap, rate
+    settling.evaluated = 0
 
 
 @compiled(makes_arrays=True)
 def predict(m: Model, k: int, known: bool, t: float, y: Floats, gap: float, rate: float) -> None:
     """Set a pair's deflections to where the search begins; at the end of the last step, to what they are there."""
-    n, first, own = m.scene.nodes, first_unknown(m, k), m.work.settling[k]
-    if own.evaluated != 0 and own.time == t and own.known == int(known):
+    n, first, settling = m.scene.nodes, first_unknown(m, k), m.work.settling[k]
+    if settling.evaluated != 0 and settling.time == t and settling.known == int(known):
         deflection, tangent = row(m, k, DEFLECTION), row(m, k, TANGENT)
         for i in range(n):
-            y[first + i] = deflection[i] + tangent[i] * (gap - own.gap)
+            y[first + i] = deflection[i] + tangent[i] * (gap - settling.gap)
         return
-    if own.last_known == 0 or not (known or t == own.last_time):
+    if settling.last_known == 0 or not (known or t == settling.last_time):
         for i in range(n):
             y[first + i] = 0.0
         return
     last, last_tangent = row(m, k, LAST), row(m, k, LAST_TANGENT)
-    moved = gap - own.last_gap
+    moved = gap - settling.last_gap
     for i in range(n):
         y[first + i] = last[i] + last_tangent[i] * moved
-    span, ahead = own.last_time - own.before_time, t - own.last_time
-    same_way = own.before_rate * own.last_rate > 0.0 and own.last_rate * rate > 0.0
-    if own.before_known == 0 or not same_way or not span > 0.0 or abs(ahead) > FARTHEST * span:
+    span, ahead = settling.last_time - settling.before_time, t - settling.last_time
+    same_way = settling.before_rate * settling.last_rate > 0.0 and settling.last_rate * rate > 0.0
+    if settling.before_known == 0 or not same_way or not span > 0.0 or abs(ahead) > FARTHEST * span:
         return
     before, before_tangent = row(m, k, BEFORE), row(m, k, BEFORE_TANGENT)
-    back, x = own.before_gap - own.last_gap, ahead / span
+    back, x = settling.before_gap - settling.last_gap, ahead / span
     for i in range(n):
         rise = before[i] - last[i] - last_tangent[i] * back
-        bend = span * own.before_rate * (before_tangent[i] - last_tangent[i])
+        bend = span * settling.before_rate * (before_tangent[i] - last_tangent[i])
         y[first + i] += ((bend + 3.0 * rise) + (bend + 2.0 * rise) * x) * x * x

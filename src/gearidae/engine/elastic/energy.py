@@ -58,8 +58,8 @@ def nodes_stored(m: Model, k: int, t: float, y: Floats, gap: float, rate: float,
     energy = 0.0
     for i in range(m.scene.nodes):
         h = gap + profile[i] + y[first + i]
-        own = potential_of(m, h, shares) + 0.5 * pressure[i] * y[first + i]
-        energy += weights[i] * own
+        at_node = potential_of(m, h, shares) + 0.5 * pressure[i] * y[first + i]
+        energy += weights[i] * at_node
     gaps = np.empty(m.scene.points)
     point_gaps(m, k, y, gap, gaps)
     for material in range(MATERIALS):
@@ -81,13 +81,13 @@ def nodes_losses(m: Model, k: int, y: Floats, gap: float) -> Shares:
 @compiled(makes_arrays=True)
 def _loss(m: Model, k: int, gaps: Floats, material: int) -> float:
     """Joining loss of a material; 0 of one without hysteresis."""
-    finer, own, loss = point_weights(m), m.scene.material[material], 0.0
+    finer, surface, loss = point_weights(m), m.scene.material[material], 0.0
     heights, adhered_energy = row(m, k, JOINED + material), row(m, k, ADHERED_ENERGY + material)
-    for i in range(gaps.size if own.stretch_limit != 0.0 else 0):
+    for i in range(gaps.size if surface.stretch_limit != 0.0 else 0):
         if gaps[i] < heights[i]:
-            above = loading_value(m.tables, own.number_at, gaps[i] + own.gap_offset)[0]
-            more = own.joining_energy * above + adhered_energy[i]
-            loss += own.force_scale * finer[i] * more
+            above = loading_value(m.tables, surface.number_at, gaps[i] + surface.gap_offset)[0]
+            more = surface.joining_energy * above + adhered_energy[i]
+            loss += surface.force_scale * finer[i] * more
     return loss
 
 
@@ -118,16 +118,16 @@ def nodes_energies(m: Model, k: int, y: Floats, gap: float) -> tuple[Shares, Sha
 @compiled(makes_arrays=True)
 def _stretched(m: Model, k: int, gaps: Floats, moves: Floats, material: int) -> tuple[float, float]:
     """Energy of a material's stretched asperities, and its slope where the points move so far with the pair's gap."""
-    own, finer, energy, slope = m.scene.material[material], point_weights(m), 0.0, 0.0
+    surface, finer, energy, slope = m.scene.material[material], point_weights(m), 0.0, 0.0
     heights, adhered_energy = row(m, k, JOINED + material), row(m, k, ADHERED_ENERGY + material)
-    offset, table = own.gap_offset, m.tables[own.energy_at :]
+    offset, table = surface.gap_offset, m.tables[surface.energy_at :]
     farthest = farthest_joined(heights[0], offset)
-    for i in range(gaps.size if own.stretch_limit != 0.0 else 0):
+    for i in range(gaps.size if surface.stretch_limit != 0.0 else 0):
         if heights[i] > farthest:
             break
         e, de = stretched_energy(table, adhered_energy[i], gaps[i] + offset, heights[i] + offset)
-        energy += own.force_scale * finer[i] * e
-        slope += own.force_scale * finer[i] * moves[i] * de
+        energy += surface.force_scale * finer[i] * e
+        slope += surface.force_scale * finer[i] * moves[i] * de
     return energy, slope
 
 
@@ -164,9 +164,9 @@ def nodes_number(m: Model, k: int, y: Floats, gap: float, material: int) -> floa
     """Asperities of a material in contact per length, over their density."""
     finer, gaps = point_weights(m), np.empty(m.scene.points)
     point_gaps(m, k, y, gap, gaps)
-    own, heights = m.scene.material[material], row(m, k, JOINED + material)
+    surface, heights = m.scene.material[material], row(m, k, JOINED + material)
     number = 0.0
     for i in range(gaps.size):
-        height = joined_height(heights[i], gaps[i], own.stretch_limit)
-        number += finer[i] * loading_value(m.tables, own.number_at, height + own.gap_offset)[0]
+        height = joined_height(heights[i], gaps[i], surface.stretch_limit)
+        number += finer[i] * loading_value(m.tables, surface.number_at, height + surface.gap_offset)[0]
     return number

@@ -70,7 +70,7 @@ def join_nodes(m: Model, k: int, y: Floats, gap: float) -> None:
 def book_points(m: Model, k: int, material: int) -> None:
     """Note the energy of what is joined at the points, which changes when the joined heights do."""
     joined, adhered_energy = row(m, k, JOINED + material), row(m, k, ADHERED_ENERGY + material)
-    own = m.scene.material[material]
-    joining, offset = own.joining_energy, own.gap_offset
+    surface = m.scene.material[material]
+    joining, offset = surface.joining_energy, surface.gap_offset
     for i in range(m.scene.points if joining != 0.0 else 0):
-        adhered_energy[i] = -joining * loading_value(m.tables, own.number_at, joined[i] + offset)[0]
+        adhered_energy[i] = -joining * loading_value(m.tables, surface.number_at, joined[i] + offset)[0]

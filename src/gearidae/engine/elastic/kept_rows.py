@@ -43,9 +43,9 @@ def restore_rows(m: Model, rows: Floats) -> None:
     """Take rows back that have been checked, and work out what follows from them; ``m.state`` is that of the rows."""
     if m.scene.nodes == 0:
         return
-    own = _all_rows(m)
-    own[:] = 0.0
-    own[:, _kept_columns(m)] = rows.reshape(m.scene.histories, -1)
+    all_rows = _all_rows(m)
+    all_rows[:] = 0.0
+    all_rows[:, _kept_columns(m)] = rows.reshape(m.scene.histories, -1)
     for k in np.flatnonzero(_pairs(m) != EMPTY).tolist():
         for material in range(MATERIALS):
             book_points(m, k, material)

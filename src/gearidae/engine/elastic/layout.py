@@ -159,7 +159,9 @@ def _influence(scene: Scene, bounds: ContactBounds, length: float, deepest: floa
 def _stretch(scene: Scene) -> float:
     """How far asperities stretch at most, in roughnesses."""
     return max(
-        law_of(scene.contact.asperity, one.surface).detach for one in scene.materials() if one.share > 0.0
+        law_of(scene.contact.asperity, material.surface).detach
+        for material in scene.materials()
+        if material.share > 0.0
     )
 
 
@@ -271,8 +273,8 @@ def rigid_limit(scene: Scene, bounds: ContactBounds) -> tuple[float, bool]:
     materials = scene.materials()
     mixtures: list[tuple[Material, ...]] = [materials]
     if scene.coating.by_place:
-        mixtures = [(one._replace(share=1.0),) for one in materials if one.share > 0.0]
-    limits = [_limit_of(scene, bounds, widest, one) for one in mixtures]
+        mixtures = [(material._replace(share=1.0),) for material in materials if material.share > 0.0]
+    limits = [_limit_of(scene, bounds, widest, material) for material in mixtures]
     return max(lowest for lowest, _ in limits), all(enough for _, enough in limits)
 
 

@@ -28,7 +28,7 @@ def limit_of_nodes(
         Slopes of the deflections in the pair's gap.
     """
     k, gap = pair.k, pair.gap
-    first, shares, own = first_unknown(m, k), noted_shares(m, k), m.scene.friction
+    first, shares, friction = first_unknown(m, k), noted_shares(m, k), m.scene.friction
     profile, weights, finer = node_profile(m), node_weights(m), point_weights(m)
     limit = slope = 0.0
     for i in range(m.scene.nodes):
@@ -37,7 +37,7 @@ def limit_of_nodes(
         slope += weights[i] * by_gap * (1.0 + follow[i])
     if pair.known and is_stretched(m, k, pair.rate):
         added, stiff, moved = np.zeros(m.scene.points), np.zeros(m.scene.points), np.zeros(m.scene.points)
-        scales = own.scale[0] * shares[0], own.scale[1] * shares[1], own.scale[2] * shares[2]
+        scales = friction.scale[0] * shares[0], friction.scale[1] * shares[1], friction.scale[2] * shares[2]
         add_stretched(m, k, t, y, (gap, pair.rate), scales, (added, stiff))
         to_points(m, follow, moved)
         for i in range(m.scene.points):

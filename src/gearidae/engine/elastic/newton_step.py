@@ -146,7 +146,7 @@ def _sum_series(m: Model, slopes: Floats, kappa: Floats, x: Floats, term: Floats
 
 
 @compiled(makes_arrays=True)
-def _eliminate(m: Model, slopes: Floats, kappa: Floats, one: Floats, two: Floats) -> bool:
+def _eliminate(m: Model, slopes: Floats, kappa: Floats, x: Floats, y: Floats) -> bool:
     """Solve for two right-hand sides, in place; whether the determinant is positive."""
     n, weights, a = m.scene.nodes, node_weights(m), equation_space(m, _SLOPES + 1)
     width = padded(n)
@@ -160,15 +160,15 @@ def _eliminate(m: Model, slopes: Floats, kappa: Floats, one: Floats, two: Floats
                 add_lanes(a, np.uintp(width * i + c), slopes, np.uintp(width * j + c), factor)
     for i in range(n):
         a[width * i + i] += 1.0
-        a[width * i + n], a[width * i + n + 1] = one[i], two[i]
+        a[width * i + n], a[width * i + n + 1] = x[i], y[i]
     positive = _triangular(a, n)
     for k in range(n - 1, -1, -1):
-        first, second, own = a[width * k + n], a[width * k + n + 1], a[width * k + k]
+        first, second, pivot = a[width * k + n], a[width * k + n + 1], a[width * k + k]
         for j in range(k + 1, n):
-            first -= a[width * k + j] * one[j]
-            second -= a[width * k + j] * two[j]
-        inverse = 1.0 / own if own != 0.0 else math.inf
-        one[k], two[k] = first * inverse, second * inverse
+            first -= a[width * k + j] * x[j]
+            second -= a[width * k + j] * y[j]
+        inverse = 1.0 / pivot if pivot != 0.0 else math.inf
+        x[k], y[k] = first * inverse, second * inverse
     return positive
 
 

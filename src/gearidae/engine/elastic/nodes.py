@@ -149,8 +149,8 @@ def is_stretched(m: Model, k: int, rate: float) -> bool:
 @compiled(inline=True)
 def force_scales(m: Model, k: int) -> Shares:
     """Force scales of the materials of a pair, with their shares there."""
-    (a, b, c), own = noted_shares(m, k), m.scene.material
-    return own[0].force_scale * a, own[1].force_scale * b, own[2].force_scale * c
+    (a, b, c), materials = noted_shares(m, k), m.scene.material
+    return materials[0].force_scale * a, materials[1].force_scale * b, materials[2].force_scale * c
 
 
 @compiled(makes_arrays=True)
@@ -208,9 +208,9 @@ def _add_material(
 ) -> None:
     """Add the pressure of stretched asperities at the points, and its slopes; `which` is a material and a way."""
     (material, way), (gaps, turning), (added, stiff) = which, at, out
-    own, points = m.scene.material[material], m.scene.points
-    limit, offset = own.stretch_limit, own.gap_offset
-    table, heights = m.tables[own.table_at :], joined_at(m, k, material)
+    surface, points = m.scene.material[material], m.scene.points
+    limit, offset = surface.stretch_limit, surface.gap_offset
+    table, heights = m.tables[surface.table_at :], joined_at(m, k, material)
     farthest = farthest_joined(m.rows[heights], offset)
     kept = way != _TURNED and m.scene.point_branch_length > 0 and branch_length(table) > 0
     for i in range(points):
@@ -280,10 +280,10 @@ def weighed_stiffness(m: Model, k: int, out: Floats, width: int) -> None:
     for point in range(m.scene.points):
         stiffness = finer[point] * stiff[point]
         if stiffness != 0.0:
-            first, own = first_node(point, n), STENCIL * point
+            first, at = first_node(point, n), STENCIL * point
             for i in range(STENCIL):
                 place = np.uintp((first + i) * width + first)
-                add_lanes(out, place, shares, np.uintp(own), shares[own + i] * stiffness)
+                add_lanes(out, place, shares, np.uintp(at), shares[at + i] * stiffness)
     for i in range(n):
         out[(width + 1) * i] += weights[i] * slope[i]
 

@@ -89,20 +89,20 @@ def stored_energies(m: Model, k: int, gap: float) -> tuple[Shares, Shares]:
 @compiled(inline=True)
 def _stretched(m: Model, k: int, gap: float, material: int) -> tuple[float, float]:
     """Energy of a material's stretched asperities beyond its loading branch, and its slope."""
-    h, own = m.state.history[k], m.scene.material[material]
-    scale, stretch = own.force_scale, gap - h.joined[material]
-    if own.stretch_limit == 0.0:
+    h, surface = m.state.history[k], m.scene.material[material]
+    scale, stretch = surface.force_scale, gap - h.joined[material]
+    if surface.stretch_limit == 0.0:
         return 0.0, 0.0
     if stretch <= 0.0:
         return scale * h.adhered_energy[material], 0.0
-    table, joined = m.tables[own.energy_at :], h.joined[material] + own.gap_offset
-    if stretch < own.stretch_limit and m.scene.branch_length > 0 and branch_length(table) > 0:
+    table, joined = m.tables[surface.energy_at :], h.joined[material] + surface.gap_offset
+    if stretch < surface.stretch_limit and m.scene.branch_length > 0 and branch_length(table) > 0:
         branch = m.rows[energy_branch(m, k, material) :]
         if branch[B_PIECES] == 0.0:
             set_branch(table, joined, branch)
         e, de = branch_value(branch, stretch)
     else:
-        e, de = stretched_energy(table, h.adhered_energy[material], gap + own.gap_offset, joined)
+        e, de = stretched_energy(table, h.adhered_energy[material], gap + surface.gap_offset, joined)
     return scale * e, scale * de
 
 
@@ -139,18 +139,18 @@ def _free(
     m: Model, k: int, known: bool, gap: float, turning_gap: float, material: int
 ) -> tuple[float, float]:
     """Free energy of a material's asperities beyond its loading branch, and its slope; no turning point is NaN."""
-    own = m.scene.material[material]
-    scale, offset = own.force_scale, own.gap_offset
-    if own.stretch_limit == 0.0 or scale == 0.0:
+    surface = m.scene.material[material]
+    scale, offset = surface.force_scale, surface.gap_offset
+    if surface.stretch_limit == 0.0 or scale == 0.0:
         return 0.0, 0.0
     joined = m.state.history[k].joined[material] if known else gap
     if not math.isnan(turning_gap):
-        joined = joined_height(joined, turning_gap, own.stretch_limit)
-    number, falling = loading_value(m.tables, own.number_at, min(gap, joined) + offset)
-    adhered = -own.joining_energy * number
+        joined = joined_height(joined, turning_gap, surface.stretch_limit)
+    number, falling = loading_value(m.tables, surface.number_at, min(gap, joined) + offset)
+    adhered = -surface.joining_energy * number
     if gap <= joined:
-        return scale * adhered, -(scale * own.joining_energy * falling)
-    e, de = stretched_energy(m.tables[own.energy_at :], adhered, gap + offset, joined + offset)
+        return scale * adhered, -(scale * surface.joining_energy * falling)
+    e, de = stretched_energy(m.tables[surface.energy_at :], adhered, gap + offset, joined + offset)
     return scale * e, scale * de
 
 
@@ -163,28 +163,28 @@ def joining_losses(m: Model, k: int, y: Floats, gap: float) -> tuple[Shares, Sha
 
     Of each as if it covered everything. Of an elastic contact the slopes are those of a rigid one in proportion.
     """
-    joined, given = m.state.history[k].joined, NONE
+    joined, losses = m.state.history[k].joined, NONE
     if m.scene.nodes > 0:
-        given = nodes_losses(m, k, y, gap)
+        losses = nodes_losses(m, k, y, gap)
     elif gap >= max(joined[0], joined[1], joined[2]):
         return NONE, NONE
-    a, a1 = _loss(m, k, gap, 0, given[0])
-    b, b1 = _loss(m, k, gap, 1, given[1])
-    c, c1 = _loss(m, k, gap, 2, given[2])
+    a, a1 = _loss(m, k, gap, 0, losses[0])
+    b, b1 = _loss(m, k, gap, 1, losses[1])
+    c, c1 = _loss(m, k, gap, 2, losses[2])
     return (a, b, c), (a1, b1, c1)
 
 
 @compiled(inline=True)
-def _loss(m: Model, k: int, gap: float, material: int, given: float) -> tuple[float, float]:
-    """Loss of one material and its slope; that of an elastic contact is `given`."""
-    own, h = m.scene.material[material], m.state.history[k]
-    elastic, scale = m.scene.nodes > 0, own.force_scale
-    if own.stretch_limit == 0.0 or (gap >= h.joined[material] and not elastic):
+def _loss(m: Model, k: int, gap: float, material: int, loss: float) -> tuple[float, float]:
+    """Loss of one material and its slope; that of an elastic contact is `loss`."""
+    surface, h = m.scene.material[material], m.state.history[k]
+    elastic, scale = m.scene.nodes > 0, surface.force_scale
+    if surface.stretch_limit == 0.0 or (gap >= h.joined[material] and not elastic):
         return 0.0, 0.0
-    number, slope = loading_value(m.tables, own.number_at, gap + own.gap_offset)
+    number, slope = loading_value(m.tables, surface.number_at, gap + surface.gap_offset)
     if elastic:
-        return given, (given * slope / number if number > 0.0 else 0.0)
+        return loss, (loss * slope / number if number > 0.0 else 0.0)
     return (
-        scale * (own.joining_energy * number + h.adhered_energy[material]),
-        scale * own.joining_energy * slope,
+        scale * (surface.joining_energy * number + h.adhered_energy[material]),
+        scale * surface.joining_energy * slope,
     )

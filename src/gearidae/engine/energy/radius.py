@@ -62,14 +62,14 @@ def _pair_power(
         bodies, bodies_rate, energies, slopes = _elastic(m, coast, pair, k, gap, opening, t, y, length)
     else:
         energies, slopes = stored_energies(m, k, gap)
-    own = weighed_length(m, (coast, pair, phase), w, w_rate, energies, slopes)
-    power = bodies * stretch + own.rate
-    rate = bodies_rate * stretch + bodies * bend + own.bend + opening * own.by_gap
+    energy = weighed_length(m, (coast, pair, phase), w, w_rate, energies, slopes)
+    power = bodies * stretch + energy.rate
+    rate = bodies_rate * stretch + bodies * bend + energy.bend + opening * energy.by_gap
     if m.scene.attracts != 0:
         energies, slopes = attraction_energies(m, gap)
-        own = weighed_length(m, (coast, pair, phase), w, w_rate, energies, slopes)
-        power += own.rate
-        rate += own.bend + opening * own.by_gap
+        energy = weighed_length(m, (coast, pair, phase), w, w_rate, energies, slopes)
+        power += energy.rate
+        rate += energy.bend + opening * energy.by_gap
     return power, rate
 
 

@@ -53,12 +53,12 @@ def asperity_guard(m: Model, y: Floats) -> float:
         k = m.work.known[i]
         now = pair_of(m, k, y)
         if not covers(m, k, now.gap, now.place):
-            own, gap, low, high = m.work.contact[k], now.gap, now.place, now.place
-            if own.started != 0:
+            contact, gap, low, high = m.work.contact[k], now.gap, now.place, now.place
+            if contact.started != 0:
                 gap, low, high = (
-                    min(gap, own.start_gap),
-                    min(low, own.start_place),
-                    max(high, own.start_place),
+                    min(gap, contact.start_gap),
+                    min(low, contact.start_place),
+                    max(high, contact.start_place),
                 )
             choose(m, k, now.coast, now.number, gap, low, high)
         at = spot_at(m, now.place, now.moves)
@@ -94,22 +94,22 @@ def flip_asperities(m: Model, y: Floats) -> bool:
         m.work.contact[k].flips = 0
     for i in range(list_known(m, y)):
         k = m.work.known[i]
-        own = m.work.contact[k]
-        if own.count == 0:
+        contact = m.work.contact[k]
+        if contact.count == 0:
             continue
         now, flipped = pair_of(m, k, y), column(m, k, REMEMBERED)
         at = spot_at(m, now.place, now.moves)
         bend = 0.5 * m.scene.population.steepness / at.radius
-        for j in range(own.count):
+        for j in range(contact.count):
             guard = _guard(m, k, j, now, at.arc, bend)
             if guard < 0.0:
                 _flip(m, k, j, guard)
-                m.rows[flipped + own.flips] = j
-                own.flips += 1
-        if own.flips > 0:
+                m.rows[flipped + contact.flips] = j
+                contact.flips += 1
+        if contact.flips > 0:
             list_joined(m, k)
-            m.state.cycle_events += own.flips
-            flips += own.flips
+            m.state.cycle_events += contact.flips
+            flips += contact.flips
     return flips > 0
 
 
@@ -157,9 +157,9 @@ def record_flips(m: Model, t: float, y: Floats, events: Floats, count: int) -> t
     """
     flips = 0
     for k in range(m.scene.histories):
-        own, h = m.work.contact[k], m.state.history[k]
+        contact, h = m.work.contact[k], m.state.history[k]
         coast = flank_of_history(m, k)
-        for i in range(own.flips):
+        for i in range(contact.flips):
             flips += 1
             if m.scene.population.quiet == 0 and flips < FLIPS_HIGH:
                 j = int(m.rows[column(m, k, REMEMBERED) + i])
@@ -167,7 +167,7 @@ def record_flips(m: Model, t: float, y: Floats, events: Floats, count: int) -> t
                 asperity = m.rows[column(m, k, INDEX) + j]
                 asperity -= m.tables[m.scene.population.starts_at + flank_of(m, coast, h.pair)]
                 count = record_asperity(m, events, count, (t, kind, h.pair, coast, h.gap_rate), asperity)
-        if own.flips > 0 and (own.joined > 0) != (h.in_contact != 0):
+        if contact.flips > 0 and (contact.joined > 0) != (h.in_contact != 0):
             h.in_contact = 1 - h.in_contact
             kind = _PAIR_ONSET if h.in_contact != 0 else _PAIR_SEPARATION
             count = record_contact(m, y, events, count, (t, kind, h.pair, coast, h.gap_rate))
@@ -175,7 +175,7 @@ def record_flips(m: Model, t: float, y: Floats, events: Floats, count: int) -> t
                 if m.state.last_flank == 1 - coast:
                     count = record(m, events, count, t, _FLANK_CHANGE, h.pair, coast, h.gap_rate)
                 m.state.last_flank = coast
-        own.flips = 0
+        contact.flips = 0
     return count, flips >= FLIPS_HIGH or m.state.cycle_events > CYCLE_HIGH
 
 
@@ -201,10 +201,10 @@ def note_step_start(m: Model, y: Floats) -> None:
     for k in range(m.scene.histories):
         m.work.contact[k].started = 0
     for i in range(list_known(m, y)):
-        own, now = m.work.contact[m.work.known[i]], pair_of(m, m.work.known[i], y)
-        own.started, own.start_moves = 1, 1 if now.moves else 0
-        own.start_gap, own.start_rate = now.gap, now.rate
-        own.start_place, own.start_place_rate = now.place, now.place_rate
+        contact, now = m.work.contact[m.work.known[i]], pair_of(m, m.work.known[i], y)
+        contact.started, contact.start_moves = 1, 1 if now.moves else 0
+        contact.start_gap, contact.start_rate = now.gap, now.rate
+        contact.start_place, contact.start_place_rate = now.place, now.place_rate
 
 
 @compiled_once(POPULATION)
@@ -226,8 +226,8 @@ def first_dip(m: Model, y: Floats, h: float) -> float:
     first = 2.0
     for i in range(list_known(m, y)):
         k = m.work.known[i]
-        own = m.work.contact[k]
-        if own.started == 0:
+        contact = m.work.contact[k]
+        if contact.started == 0:
             continue
         now = pair_of(m, k, y)
         before = PairState(
@@ -235,12 +235,12 @@ def first_dip(m: Model, y: Floats, h: float) -> float:
             now.number,
             k,
             True,
-            own.start_gap,
-            own.start_rate,
+            contact.start_gap,
+            contact.start_rate,
             0.0,
-            own.start_place,
-            own.start_place_rate,
-            own.start_moves != 0,
+            contact.start_place,
+            contact.start_place_rate,
+            contact.start_moves != 0,
         )
         first = min(first, _first_dip_of(m, k, before, now, h))
     return first if first < 1.0 else -1.0

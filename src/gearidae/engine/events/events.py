@@ -16,8 +16,8 @@ from gearidae.engine.elastic.nodes import middle_gap
 from gearidae.engine.events.asperity_events import asperity_guard
 from gearidae.engine.events.mesh_marks import cross_mark, crossed_mark, mark_guard, outruns_relief
 from gearidae.engine.events.pair_events import pair_guard
-from gearidae.engine.events.run_stop import stop_guard
 from gearidae.engine.events.sliding import REVERSALS_HIGH, dry_guard
+from gearidae.engine.events.stops import stop_guard
 from gearidae.engine.model.state import COAST, DRIVE, Floats, Model
 from gearidae.engine.pairs.tooth_pairs import (
     flank_of_history,

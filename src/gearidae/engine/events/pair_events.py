@@ -81,7 +81,7 @@ def find_event(m: Model, y: Floats, coast: int, pair: int, k: int) -> PairEvent:
 
 
 @compiled
-def take_event(m: Model, t: float, y: Floats, found: PairEvent, events: Floats, count: int) -> int:
+def take_event(m: Model, t: float, y: Floats, event: PairEvent, events: Floats, count: int) -> int:
     """Have a pair's history take what has happened, which disarms its guards, and return the new number of events.
 
     Parameters
@@ -94,24 +94,24 @@ def take_event(m: Model, t: float, y: Floats, found: PairEvent, events: Floats, 
     count : int
         See `gearidae.engine.events.record`.
     """
-    coast, pair, k, rate = found.coast, found.pair, found.k, found.rate
-    if found.touches:
-        count = _change_contact(m, t, y, found, events, count)
-    for material in range(MATERIALS if found.stretches else 0):
-        if newly_stretched(m, k, material, found.middle):
+    coast, pair, k, rate = event.coast, event.pair, event.k, event.rate
+    if event.touches:
+        count = _change_contact(m, t, y, event, events, count)
+    for material in range(MATERIALS if event.stretches else 0):
+        if newly_stretched(m, k, material, event.middle):
             m.state.history[k].fully_stretched[material] = 1
             count = record(m, events, count, t, _FULL_STRETCH, pair, coast, rate)
-    if found.turns:
-        _turn_round(m, y, k, found.gap, found.middle)
+    if event.turns:
+        _turn_round(m, y, k, event.gap, event.middle)
         count = record(m, events, count, t, _TURNING_POINT, pair, coast, rate)
     return count
 
 
 @compiled
-def _change_contact(m: Model, t: float, y: Floats, found: PairEvent, events: Floats, count: int) -> int:
+def _change_contact(m: Model, t: float, y: Floats, event: PairEvent, events: Floats, count: int) -> int:
     """Contact onset or separation, and a change of flank with it."""
-    coast, pair, rate = found.coast, found.pair, found.rate
-    h = m.state.history[found.k]
+    coast, pair, rate = event.coast, event.pair, event.rate
+    h = m.state.history[event.k]
     h.in_contact = 1 - h.in_contact
     onset = h.in_contact != 0
     count = record_contact(m, y, events, count, (t, _ONSET if onset else _SEPARATION, pair, coast, rate))

@@ -285,14 +285,14 @@ def _let_go(m: Model, t: float, y: Floats) -> None:
     """Let go of the element that is held, if that takes more friction than its limit."""
     state = m.state
     turn, pinion, gear = forces_at_shafts(m, t, y)
-    found = solve_shafts(m, t, y, turn, pinion, gear)
-    if found.margin < -NO_FORCE:
+    shafts = solve_shafts(m, t, y, turn, pinion, gear)
+    if shafts.margin < -NO_FORCE:
         kind, state.hold = state.hold, FREE
-        slip = _sign(found.held)
+        slip = _sign(shafts.held)
         _set_slip(m, kind, state.held_pair, slip)
         if kind == HELD_PAIR and has_hubs(m):  # hubs that nearly lock may need less friction for more load
-            found = solve_shafts(m, t, y, turn, pinion, gear)
-            if slip * _sliding_rate(m, state.held_pair, turn, y[W], found) < 0.0:
+            shafts = solve_shafts(m, t, y, turn, pinion, gear)
+            if slip * _sliding_rate(m, state.held_pair, turn, y[W], shafts) < 0.0:
                 _set_slip(m, kind, state.held_pair, -slip)
 
 
@@ -321,26 +321,26 @@ def _rests(m: Model, t: float, y: Floats) -> bool:
 @compiled
 def _decide_at_rest(m: Model, t: float, y: Floats) -> None:
     """Decide on all elements at once, where both gears stand still."""
-    state, found = m.state, m.work.rubbing
+    state, work = m.state, m.work.rubbing
     state.reversals += 1
     y[W] = y[V] = 0.0
     _, pinion, gear = forces_at_shafts(m, t, y)
     list_elements(m, t, y)
     if rest_margin(m, pinion, gear) >= -NO_FORCE:
         state.hold = AT_REST
-        for i in range(found.count):
-            _set_slip(m, found.element[i].hold, found.element[i].history, 0.0)
+        for i in range(work.count):
+            _set_slip(m, work.element[i].hold, work.element[i].history, 0.0)
     else:
         way = way_from_rest(m, pinion, gear)
         state.hold = FREE
-        for i in range(found.count):
-            one = found.element[i]
-            slip = _sign(one.pinion * way.pinion + one.gear * way.gear)
+        for i in range(work.count):
+            element = work.element[i]
+            slip = _sign(element.pinion * way.pinion + element.gear * way.gear)
             if i == way.element:
-                state.hold, slip = one.hold, 0.0
-                if one.hold == HELD_PAIR:
-                    state.held_pair = one.history
-            _set_slip(m, one.hold, one.history, slip)
+                state.hold, slip = element.hold, 0.0
+                if element.hold == HELD_PAIR:
+                    state.held_pair = element.history
+            _set_slip(m, element.hold, element.history, slip)
 
 
 @compiled

@@ -13,7 +13,7 @@ from gearidae.compiled import compiled
 from gearidae.engine.events.pair_events import PairEvent
 from gearidae.engine.followers import balance, joining, rubbing
 from gearidae.engine.followers.exposures import follow as exposures
-from gearidae.engine.followers.exposures.asperities import add_flips
+from gearidae.engine.followers.exposures.contacts import add_flips
 from gearidae.engine.followers.extremes import follow as extremes
 from gearidae.engine.model.located import model_at
 from gearidae.engine.model.state import Floats, Model, W
@@ -63,14 +63,14 @@ def step(
 
 
 @compiled(inline=True)
-def event(m: Model, t: float, y: Floats, yp: Floats, found: PairEvent) -> None:
+def event(m: Model, t: float, y: Floats, yp: Floats, event: PairEvent) -> None:
     """Take note of what has happened to a pair, before its history does."""
     if m.scene.follow.balance != 0:
         joining.step(m, t, y, yp[W])
-        if found.turns:
-            joining.event(m, y, found.coast, found.pair, found.k, found.gap)
+        if event.turns:
+            joining.event(m, y, event.coast, event.pair, event.k, event.gap)
     if m.scene.follow.exposures != 0:
-        exposures.event(m, t, y, yp, found)
+        exposures.event(m, t, y, yp, event)
 
 
 @compiled

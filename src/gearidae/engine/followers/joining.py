@@ -106,8 +106,8 @@ def _follow_pairs(m: Model, span: float, y: Floats, w_rate: float) -> None:
         power = rate = 0.0
         losses, slopes = joining_losses(m, k, y, gap)
         if losses[0] != 0.0 or losses[1] != 0.0 or losses[2] != 0.0:
-            own = weighed_length(m, (coast, h.pair, y[PHASE]), y[W], w_rate, losses, slopes)
-            power, rate = own.rate, own.bend - (1.0 - 2.0 * coast) * y[V] * own.by_gap
+            loss = weighed_length(m, (coast, h.pair, y[PHASE]), y[W], w_rate, losses, slopes)
+            power, rate = loss.rate, loss.bend - (1.0 - 2.0 * coast) * y[V] * loss.by_gap
         h.lag += integral(span, h.lag_power, power, h.lag_rate, rate)
         h.lag_power, h.lag_rate = power, rate
 

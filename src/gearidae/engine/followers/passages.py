@@ -34,9 +34,9 @@ _KIND, _PAIR, _FLANK = EVENT.kind, EVENT.pair, EVENT.flank
 def _words(record: np.dtype, fields: Sequence[Quantity]) -> tuple[int, ...]:
     """Place of each number of some fields among those of a record."""
     assert record.fields is not None
-    firsts = [record.fields[each.name][1] // 8 for each in fields]
+    firsts = [record.fields[field.name][1] // 8 for field in fields]
     return tuple(
-        first + i for first, each in zip(firsts, fields, strict=True) for i in range(len(each.names))
+        first + i for first, field in zip(firsts, fields, strict=True) for i in range(len(field.names))
     )
 
 
@@ -44,8 +44,8 @@ _SUMS: Final = _words(STATE["energy"], SUMS)
 _CHANGES: Final = _words(WORK["energy_now"], CHANGES)
 _FIRST_SUM: Final = PASSAGE_NUMBERS - len(_SUMS) - len(_CHANGES)
 _FIRST_CHANGE: Final = PASSAGE_NUMBERS - len(_CHANGES)
-_UNITS: Final = tuple(dict.fromkeys(each.unit for each in COLUMNS))
-_UNIT_OF: Final = np.array([_UNITS.index(each.unit) for each in COLUMNS for _ in each.names])
+_UNITS: Final = tuple(dict.fromkeys(field.unit for field in COLUMNS))
+_UNIT_OF: Final = np.array([_UNITS.index(field.unit) for field in COLUMNS for _ in field.names])
 _ADHESION: Final = PASSAGE.adhesion_loss
 _RADIUS: Final = PASSAGE.radius_work
 

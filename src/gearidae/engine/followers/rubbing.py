@@ -49,9 +49,9 @@ def note_rubbing(m: Model, t: float, y: Floats) -> None:
     if m.scene.nodes > 0:
         follow_slopes(m, t, y, 0.0, y)
         set_limits(m, t, y[W])
-    found = solve_shafts(m, t, y, turn, pinion, gear)
+    shafts = solve_shafts(m, t, y, turn, pinion, gear)
     r = m.work.rubbing
-    r.time, r.force = t, found.mesh.drive - found.mesh.coast + m.scene.damping * y[V]
+    r.time, r.force = t, shafts.mesh.drive - shafts.mesh.coast + m.scene.damping * y[V]
     for which in range(_POWERS):
         r.power[which] = r.power_rate[which] = 0.0
     drive = coast = drive_friction = coast_friction = 0.0  # rates
@@ -63,7 +63,7 @@ def note_rubbing(m: Model, t: float, y: Floats) -> None:
         slip = direction(m, noted) if m.scene.friction.flanks != 0 else 0.0
         friction, rate = slip * noted.limit, slip * noted.limit_rate
         speed = first * turn - second * y[W]
-        speed_rate = first * found.pinion - second * found.gear + lever_rate(m, noted, turn, y[W])
+        speed_rate = first * shafts.pinion - second * shafts.gear + lever_rate(m, noted, turn, y[W])
         power, power_rate = friction * speed, rate * speed + friction * speed_rate
         r.power[flank] += power
         r.power_rate[flank] += power_rate
@@ -75,44 +75,49 @@ def note_rubbing(m: Model, t: float, y: Floats) -> None:
             drive += noted.force_rate
             drive_friction += rate
     if m.scene.friction.joints != 0:
-        force_rate = pin_rate(m, t, y, turn, found.pinion)
+        force_rate = pin_rate(m, t, y, turn, shafts.pinion)
         if rolls:
             load_rate = Loads(
-                (ahead.pinion - found.loads.pinion) / _AHEAD, (ahead.gear - found.loads.gear) / _AHEAD
+                (ahead.pinion - shafts.loads.pinion) / _AHEAD, (ahead.gear - shafts.loads.gear) / _AHEAD
             )
         else:
-            load_rate = _load_rate(m, found, Mesh(drive, coast, drive_friction, coast_friction), force_rate)
-        _note_joints(m, found, load_rate, force_rate, turn, y[W])
+            load_rate = _load_rate(m, shafts, Mesh(drive, coast, drive_friction, coast_friction), force_rate)
+        _note_joints(m, shafts, load_rate, force_rate, turn, y[W])
 
 
 @compiled
 def _note_joints(
-    m: Model, found: Shafts, load_rate: Loads, force_rate: tuple[float, float], turn: float, w: float
+    m: Model, shafts: Shafts, load_rate: Loads, force_rate: tuple[float, float], turn: float, w: float
 ) -> None:
     """Note the powers of hubs and pin, for the rates of their loads and of the force of the pin."""
-    own, pin = m.scene.friction, math.hypot(found.pin[0], found.pin[1])
+    friction, pin = m.scene.friction, math.hypot(shafts.pin[0], shafts.pin[1])
     pin_load_rate = 0.0
     if pin > 0.0:
-        pin_load_rate = (found.pin[0] * force_rate[0] + found.pin[1] * force_rate[1]) / pin
+        pin_load_rate = (shafts.pin[0] * force_rate[0] + shafts.pin[1] * force_rate[1]) / pin
     turns, gear_turns = math.copysign(1.0, turn), math.copysign(1.0, w)
-    slip, gear_slip = m.state.pinion_slip, m.state.slip if own.gear_rubs != 0 else 0.0
-    pinion, gear = own.pinion_hub * found.loads.pinion, own.gear_hub * found.loads.gear
+    slip, gear_slip = m.state.pinion_slip, m.state.slip if friction.gear_rubs != 0 else 0.0
+    pinion, gear = friction.pinion_hub * shafts.loads.pinion, friction.gear_hub * shafts.loads.gear
     _note(
         m,
         2,
-        slip * (pinion + own.pinion_constant),
-        slip * own.pinion_hub * load_rate.pinion,
+        slip * (pinion + friction.pinion_constant),
+        slip * friction.pinion_hub * load_rate.pinion,
         turn,
-        found.pinion,
+        shafts.pinion,
     )
     _note(
-        m, 3, gear_slip * (gear + own.gear_constant), gear_slip * own.gear_hub * load_rate.gear, w, found.gear
+        m,
+        3,
+        gear_slip * (gear + friction.gear_constant),
+        gear_slip * friction.gear_hub * load_rate.gear,
+        w,
+        shafts.gear,
     )
-    _note(m, 4, slip * own.pin * pin, slip * own.pin * pin_load_rate, turn, found.pinion)
-    arms = turns * own.pinion_arm, gear_turns * own.gear_arm, turns * own.pin_arm
-    _note(m, 5, arms[0] * found.loads.pinion, arms[0] * load_rate.pinion, turn, found.pinion)
-    _note(m, 6, arms[1] * found.loads.gear, arms[1] * load_rate.gear, w, found.gear)
-    _note(m, 7, arms[2] * pin, arms[2] * pin_load_rate, turn, found.pinion)
+    _note(m, 4, slip * friction.pin * pin, slip * friction.pin * pin_load_rate, turn, shafts.pinion)
+    arms = turns * friction.pinion_arm, gear_turns * friction.gear_arm, turns * friction.pin_arm
+    _note(m, 5, arms[0] * shafts.loads.pinion, arms[0] * load_rate.pinion, turn, shafts.pinion)
+    _note(m, 6, arms[1] * shafts.loads.gear, arms[1] * load_rate.gear, w, shafts.gear)
+    _note(m, 7, arms[2] * pin, arms[2] * pin_load_rate, turn, shafts.pinion)
 
 
 @compiled(inline=True)
@@ -126,27 +131,27 @@ def _note(m: Model, which: int, force: float, force_rate: float, speed: float, a
 def _loads_ahead(m: Model, t: float, y: Floats) -> Loads:
     """Loads of the hubs a short time later: the friction that holds a pair changes with all forces at both shafts."""
     turn, pinion, gear = forces_at_shafts(m, t, y)
-    found, later = solve_shafts(m, t, y, turn, pinion, gear), np.zeros(y.size)
+    shafts, later = solve_shafts(m, t, y, turn, pinion, gear), np.zeros(y.size)
     if m.scene.nodes > 0:
         follow_slopes(m, t, y, _AHEAD, later)
     later[U] = y[U] + _AHEAD * y[V]
     e1, e2 = static_error(m, y[U], y[PHASE])[2:] if m.scene.error_count != 0 else (0.0, 0.0)
-    later[V] = y[V] + _AHEAD * ((1.0 - e1) * found.pinion - e2 * turn * turn - found.gear)
+    later[V] = y[V] + _AHEAD * ((1.0 - e1) * shafts.pinion - e2 * turn * turn - shafts.gear)
     later[PHASE] = y[PHASE] + _AHEAD * m.scene.phase_rate * y[W]
-    later[W] = y[W] + _AHEAD * found.gear
+    later[W] = y[W] + _AHEAD * shafts.gear
     turn, pinion, gear = forces_at_shafts(m, t + _AHEAD, later)
     return solve_shafts(m, t + _AHEAD, later, turn, pinion, gear).loads
 
 
 @compiled(inline=True)
-def _load_rate(m: Model, found: Shafts, rate: Mesh, force_rate: tuple[float, float]) -> Loads:
+def _load_rate(m: Model, shafts: Shafts, rate: Mesh, force_rate: tuple[float, float]) -> Loads:
     """Rates of the hubs' loads, for the rates of the forces that they are the moduli of vector sums of."""
-    along, over = vector_sum(m, found.mesh)
+    along, over = vector_sum(m, shafts.mesh)
     along_rate, over_rate = vector_sum(m, rate)
-    pinion = (along - found.pin[0]) * (along_rate - force_rate[0])
-    pinion += (over - found.pin[1]) * (over_rate - force_rate[1])
+    pinion = (along - shafts.pin[0]) * (along_rate - force_rate[0])
+    pinion += (over - shafts.pin[1]) * (over_rate - force_rate[1])
     gear = along * along_rate + over * over_rate
-    by_pinion, by_gear = found.loads.pinion, found.loads.gear
+    by_pinion, by_gear = shafts.loads.pinion, shafts.loads.gear
     return Loads(pinion / by_pinion if by_pinion != 0.0 else 0.0, gear / by_gear if by_gear != 0.0 else 0.0)
 
 

@@ -52,25 +52,25 @@ class _Limits(NamedTuple):
 @compiled
 def equilibrium_margin(m: Model, pinion: float, gear: float) -> float:
     """Largest reserve of force of all vertices; below zero if and only if nothing balances."""
-    found = m.work.rubbing
+    work = m.work.rubbing
     pinion_dry = gear_dry = 0.0
-    for i in range(found.pairs, found.count):
-        if found.element[i].hold == HELD_GEAR:
-            gear_dry = found.element[i].limit
+    for i in range(work.pairs, work.count):
+        if work.element[i].hold == HELD_GEAR:
+            gear_dry = work.element[i].limit
         else:
-            pinion_dry = found.element[i].limit
-    pin = (found.pin[0], found.pin[1])
+            pinion_dry = work.element[i].limit
+    pin = (work.pin[0], work.pin[1])
     limits = _Limits(m.scene.friction.pinion_hub, m.scene.friction.gear_hub, pinion_dry, gear_dry, pin)
-    free = _Left(pinion, gear, found.load[0], found.load[1])
-    if found.pairs == 0:
+    free = _Left(pinion, gear, work.load[0], work.load[1])
+    if work.pairs == 0:
         return _at_vertex(free, limits)
     best = -math.inf
-    for a in range(2 * found.pairs):
+    for a in range(2 * work.pairs):
         i, side = a // 2, 1.0 - 2.0 * (a % 2)
-        alone, flank = True, found.element[i].coast
-        for b in range(2 * found.pairs):
+        alone, flank = True, work.element[i].coast
+        for b in range(2 * work.pairs):
             k, beyond = b // 2, 1.0 - 2.0 * (b % 2)
-            if found.element[k].coast == flank:
+            if work.element[k].coast == flank:
                 continue
             alone = False
             best = max(best, _around(m, _less(m, free, k, beyond, beyond), i, side, limits))
@@ -105,15 +105,15 @@ def _less(m: Model, left: _Left, i: int, side: float, end: float) -> _Left:
 
     Pairs with larger levers at the pinion have one direction there, those with smaller ones the other.
     """
-    found = m.work.rubbing
-    one = found.element[i]
+    work = m.work.rubbing
+    element = work.element[i]
     pinion, gear, along, over = left
-    first, second = across(m, one.coast != 0)
-    for j in range(found.pairs):
-        pair = found.element[j]
-        if pair.coast != one.coast:
+    first, second = across(m, element.coast != 0)
+    for j in range(work.pairs):
+        pair = work.element[j]
+        if pair.coast != element.coast:
             continue
-        share = end if j == i else math.copysign(1.0, side * (pair.pinion - one.pinion))
+        share = end if j == i else math.copysign(1.0, side * (pair.pinion - element.pinion))
         friction = share * pair.limit
         pinion -= friction * pair.pinion
         gear -= friction * pair.gear
@@ -143,28 +143,28 @@ def _reserve_of_gear(limits: _Limits, loads: Loads, force: float) -> float:
 @compiled
 def _with_one(m: Model, left: _Left, i: int, limits: _Limits) -> float:
     """Largest reserve where the friction of one pair is such that one shaft is held by all that it has."""
-    one, best = m.work.rubbing.element[i], -math.inf
+    element, best = m.work.rubbing.element[i], -math.inf
     for which in range(4):
         sign = 1.0 - 2.0 * (which % 2)
         falls = gear_falls = 0.0
         if which < 2:
-            constant = (left.pinion - sign * limits.pinion_dry) / one.pinion
-            falls = sign * limits.pinion / one.pinion
+            constant = (left.pinion - sign * limits.pinion_dry) / element.pinion
+            falls = sign * limits.pinion / element.pinion
         else:
-            constant = (left.gear - sign * limits.gear_dry) / one.gear
-            gear_falls = sign * limits.gear / one.gear
+            constant = (left.gear - sign * limits.gear_dry) / element.gear
+            gear_falls = sign * limits.gear / element.gear
         total = (left.along, left.over)
         near, far, room = loads_with_friction(
-            m, one.coast != 0, total, constant, (falls, gear_falls), limits.pin
+            m, element.coast != 0, total, constant, (falls, gear_falls), limits.pin
         )
         for end in range(2):
             loads = far if end else near
             friction = constant - falls * loads.pinion - gear_falls * loads.gear
             if which < 2:
-                other = _reserve_of_gear(limits, loads, left.gear - friction * one.gear)
+                other = _reserve_of_gear(limits, loads, left.gear - friction * element.gear)
             else:
-                other = _reserve_of_pinion(limits, loads, left.pinion - friction * one.pinion)
-            best = max(best, min(room, other, one.limit - abs(friction)))
+                other = _reserve_of_pinion(limits, loads, left.pinion - friction * element.pinion)
+            best = max(best, min(room, other, element.limit - abs(friction)))
     return best
 
 
@@ -174,35 +174,43 @@ def _with_two(m: Model, left: _Left, i: int, k: int, limits: _Limits) -> float:
 
     Two pairs of one flank stand for all frictions inside its zonotope.
     """
-    found, best = m.work.rubbing, -math.inf
-    one, two = found.element[i], found.element[k]
-    determinant = one.pinion * two.gear - two.pinion * one.gear
+    work, best = m.work.rubbing, -math.inf
+    first, second = work.element[i], work.element[k]
+    determinant = first.pinion * second.gear - second.pinion * first.gear
     if abs(determinant) < _PARALLEL:
         return best
-    one_first, one_second = across(m, one.coast != 0)
-    two_first, two_second = across(m, two.coast != 0)
+    first_along, first_over = across(m, first.coast != 0)
+    second_along, second_over = across(m, second.coast != 0)
     for which in range(4):
         on_pinion, on_gear = 1.0 - 2.0 * (which % 2), 1.0 - 2.0 * (which // 2)
         a, b = left.pinion - on_pinion * limits.pinion_dry, left.gear - on_gear * limits.gear_dry
         c, d = on_pinion * limits.pinion / determinant, on_gear * limits.gear / determinant
-        f, g = (a * two.gear - two.pinion * b) / determinant, (one.pinion * b - a * one.gear) / determinant
-        u = (left.along + f * one_first + g * two_first, left.over + f * one_second + g * two_second)
-        x, z = two.gear * one_first - one.gear * two_first, two.gear * one_second - one.gear * two_second
+        f, g = (
+            (a * second.gear - second.pinion * b) / determinant,
+            (first.pinion * b - a * first.gear) / determinant,
+        )
+        u = (left.along + f * first_along + g * second_along, left.over + f * first_over + g * second_over)
+        x, z = (
+            second.gear * first_along - first.gear * second_along,
+            second.gear * first_over - first.gear * second_over,
+        )
         by_pinion = (-c * x, -c * z)
         x, z = (
-            one.pinion * two_first - two.pinion * one_first,
-            one.pinion * two_second - two.pinion * one_second,
+            first.pinion * second_along - second.pinion * first_along,
+            first.pinion * second_over - second.pinion * first_over,
         )
         by_gear = (-d * x, -d * z)
         near, far, room = consistent_loads(u, by_pinion, by_gear, limits.pin)
         for end in range(2):
             loads = far if end else near
-            p = f - c * two.gear * loads.pinion + d * two.pinion * loads.gear
-            q = g + c * one.gear * loads.pinion - d * one.pinion * loads.gear
-            if one.coast != two.coast:
-                inside = min(one.limit - abs(p), two.limit - abs(q))
+            p = f - c * second.gear * loads.pinion + d * second.pinion * loads.gear
+            q = g + c * first.gear * loads.pinion - d * first.pinion * loads.gear
+            if first.coast != second.coast:
+                inside = min(first.limit - abs(p), second.limit - abs(q))
             else:
-                inside = _inside(m, one.coast, p * one.pinion + q * two.pinion, p * one.gear + q * two.gear)
+                inside = _inside(
+                    m, first.coast, p * first.pinion + q * second.pinion, p * first.gear + q * second.gear
+                )
             best = max(best, min(room, inside))
     return best
 
@@ -210,16 +218,16 @@ def _with_two(m: Model, left: _Left, i: int, k: int, limits: _Limits) -> float:
 @compiled
 def _inside(m: Model, coast: int, pinion: float, gear: float) -> float:
     """How far the frictions of a flank are inside its zonotope, by the forces that they take from both shafts."""
-    found, least = m.work.rubbing, math.inf
-    for i in range(found.pairs):
-        one = found.element[i]
-        if one.coast != coast:
+    work, least = m.work.rubbing, math.inf
+    for i in range(work.pairs):
+        element = work.element[i]
+        if element.coast != coast:
             continue
         held = 0.0
-        for j in range(found.pairs):
-            other = found.element[j]
+        for j in range(work.pairs):
+            other = work.element[j]
             if other.coast == coast:
-                held += other.limit * abs(one.pinion * other.gear - one.gear * other.pinion)
-        taken = abs(one.pinion * gear - one.gear * pinion)
-        least = min(least, (held - taken) / math.hypot(one.pinion, one.gear))
+                held += other.limit * abs(element.pinion * other.gear - element.gear * other.pinion)
+        taken = abs(element.pinion * gear - element.gear * pinion)
+        least = min(least, (held - taken) / math.hypot(element.pinion, element.gear))
     return least

@@ -64,8 +64,8 @@ def gear_limit(m: Model, t: float, y: Floats) -> float:
 @compiled(inline=True)
 def pinion_limit(m: Model, pin: tuple[float, float]) -> float:
     """Limit of what resists the pinion under the force of a pin, without what grows with the load of its hub."""
-    own = m.scene.friction
-    return own.pinion_constant + own.pin * math.hypot(pin[0], pin[1])
+    friction = m.scene.friction
+    return friction.pinion_constant + friction.pin * math.hypot(pin[0], pin[1])
 
 
 class Shafts(NamedTuple):
@@ -130,7 +130,7 @@ class _Pairs(NamedTuple):
 @compiled(inline=True)
 def _sum_pairs(m: Model, turn: float, w: float, pinion: float, gear: float) -> _Pairs:
     """Sum the forces of all noted pairs, and take their friction from the forces at the base circles."""
-    own, state = m.scene.friction, m.state
+    dry, state = m.scene.friction, m.state
     drive = coast = drive_friction = coast_friction = 0.0
     held_first = held_second = limit = bend = 0.0
     coast_held = False
@@ -141,7 +141,7 @@ def _sum_pairs(m: Model, turn: float, w: float, pinion: float, gear: float) -> _
             coast += noted.force
         else:
             drive += noted.force
-        if own.flanks == 0:
+        if dry.flanks == 0:
             continue
         first, second = levers(m, noted.position)
         friction = direction(m, noted) * noted.limit
@@ -153,7 +153,7 @@ def _sum_pairs(m: Model, turn: float, w: float, pinion: float, gear: float) -> _
             drive_friction += friction
         if state.hold == HELD_PAIR and noted.history == state.held_pair:
             held_first, held_second, coast_held = first, second, on_coast
-            limit = noted.limit + own.blur * abs(noted.slope)
+            limit = noted.limit + dry.blur * abs(noted.slope)
             bend = lever_rate(m, noted, turn, w) + RETURN * (first * turn - second * w)
     mesh = Mesh(drive, coast, drive_friction, coast_friction)
     return _Pairs(pinion, gear, mesh, held_first, held_second, limit, bend, coast_held)
@@ -174,10 +174,10 @@ def solve_shafts(m: Model, t: float, y: Floats, turn: float, pinion: float, gear
     pinion, gear : float
         Forces at the base circles without friction and dry resistance.
     """
-    own, state = m.scene.friction, m.state
+    friction, state = m.scene.friction, m.state
     pairs = _sum_pairs(m, turn, y[W], pinion, gear)
     mesh, loads, pin, corner = pairs.mesh, Loads(0.0, 0.0), (0.0, 0.0), math.inf
-    if own.joints != 0:
+    if friction.joints != 0:
         pin = pin_force(m, t, y, turn)
         loads, along = turning_loads(m, mesh, pin)
         if has_hubs(m) and state.hold != AT_REST and state.hold != HELD_PAIR:
@@ -187,13 +187,13 @@ def solve_shafts(m: Model, t: float, y: Floats, turn: float, pinion: float, gear
     a1, a2, dry = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass, gear_limit(m, t, y)
     on_pinion = pairs.pinion - state.pinion_slip * pinion_limit(m, pin)
     on_gear = pairs.gear - _gear_slip(m) * dry
-    hub_on_pinion, hub_on_gear = state.pinion_slip * own.pinion_hub, _gear_slip(m) * own.gear_hub
+    hub_on_pinion, hub_on_gear = state.pinion_slip * friction.pinion_hub, _gear_slip(m) * friction.gear_hub
     held, margin = 0.0, math.inf
     if state.hold == HELD_PAIR:
         first, second = a1 * pairs.first, a2 * pairs.second
         inertia = max(first * pairs.first + second * pairs.second, 1e-300)
         held = (first * on_pinion - second * on_gear + pairs.bend) / inertia
-        if own.joints != 0:
+        if friction.joints != 0:
             by_loads = first * hub_on_pinion / inertia, -second * hub_on_gear / inertia
             mesh, loads, held, margin = _with_held(m, pairs, held, by_loads, pin)
         margin = min(margin, pairs.limit - abs(held))
@@ -202,10 +202,10 @@ def solve_shafts(m: Model, t: float, y: Floats, turn: float, pinion: float, gear
     on_pinion -= hub_on_pinion * loads.pinion
     on_gear -= hub_on_gear * loads.gear
     if state.hold == HELD_GEAR:
-        margin = dry + own.gear_hub * loads.gear - abs(pairs.gear)
+        margin = dry + friction.gear_hub * loads.gear - abs(pairs.gear)
         return Shafts(a1 * on_pinion, 0.0, pairs.gear, margin, mesh, loads, pin, corner)
     if state.hold == HELD_PINION:
-        margin = pinion_limit(m, pin) + own.pinion_hub * loads.pinion - abs(pairs.pinion)
+        margin = pinion_limit(m, pin) + friction.pinion_hub * loads.pinion - abs(pairs.pinion)
         return Shafts(0.0, a2 * on_gear, pairs.pinion, margin, mesh, loads, pin, corner)
     return Shafts(a1 * on_pinion, a2 * on_gear, held, margin, mesh, loads, pin, corner)
 
@@ -258,8 +258,8 @@ def rubbed_accelerations(
 ) -> tuple[float, float]:
     """Accelerations of both base circles; see `solve_shafts`. The gear's force is that with the drags."""
     set_limits(m, t, y[W])
-    found = solve_shafts(m, t, y, turn, pinion, without_drag(m, gear, y[W]))
-    return found.pinion, found.gear
+    shafts = solve_shafts(m, t, y, turn, pinion, without_drag(m, gear, y[W]))
+    return shafts.pinion, shafts.gear
 
 
 class Slopes(NamedTuple):

@@ -56,9 +56,9 @@ def across(m: Model, coast: bool) -> tuple[float, float]:
 @compiled(inline=True)
 def vector_sum(m: Model, mesh: Mesh) -> tuple[float, float]:
     """Components of the mesh forces along and across the line of action of the drive flank."""
-    own = m.scene.friction
-    along = mesh.drive - own.cosine * mesh.coast + own.sine * mesh.coast_friction
-    return along, mesh.drive_friction - own.cosine * mesh.coast_friction - own.sine * mesh.coast
+    friction = m.scene.friction
+    along = mesh.drive - friction.cosine * mesh.coast + friction.sine * mesh.coast_friction
+    return along, mesh.drive_friction - friction.cosine * mesh.coast_friction - friction.sine * mesh.coast
 
 
 @compiled(inline=True)
@@ -91,9 +91,9 @@ def pin_rate(m: Model, t: float, y: Floats, turn: float, acceleration: float) ->
 @compiled(inline=True)
 def _turned(m: Model, force: tuple[float, float]) -> tuple[float, float]:
     """Components of `vector_sum`, scaled, of a force [N] in the axes of the drive."""
-    own = m.scene.friction
+    friction = m.scene.friction
     x, y = force
-    return own.pin_sine * x + own.pin_cosine * y, own.pin_sine * y - own.pin_cosine * x
+    return friction.pin_sine * x + friction.pin_cosine * y, friction.pin_sine * y - friction.pin_cosine * x
 
 
 @compiled(inline=True)
@@ -104,13 +104,16 @@ def turning_loads(m: Model, mesh: Mesh, pin: tuple[float, float]) -> tuple[Loads
     there: the load goes on below zero, from the direction ``load_sign`` on. Where they turn round one by one, the sum
     passes beside zero. With the force of a pin the pinion's load has no corner.
     """
-    own = m.scene.friction
+    friction = m.scene.friction
     along, over = vector_sum(m, mesh)
     load = math.hypot(along, over)
     pinion = math.hypot(along - pin[0], over - pin[1])
     if abs(mesh.coast) > abs(mesh.drive):
-        along, over = -own.cosine * along - own.sine * over, own.sine * along - own.cosine * over
-    turned = m.state.load_sign * along < 0.0 and abs(over) <= (2.0 * own.even + _ROUNDING) * abs(along)
+        along, over = (
+            -friction.cosine * along - friction.sine * over,
+            friction.sine * along - friction.cosine * over,
+        )
+    turned = m.state.load_sign * along < 0.0 and abs(over) <= (2.0 * friction.even + _ROUNDING) * abs(along)
     if turned and has_hubs(m):
         load = -load
     if pin[0] == 0.0 == pin[1]:

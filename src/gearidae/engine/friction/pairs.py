@@ -26,8 +26,8 @@ RUBS: Final = 1e-8
 @compiled(inline=True)
 def levers(m: Model, inside: float) -> tuple[float, float]:
     """Levers r1/R1 and r2/R2 of a pair at a place along the path of contact."""
-    own, radius = m.scene.friction, m.scene.start_radius + inside
-    return own.pinion_lever * radius, own.gear_lever * (own.radii - radius)
+    friction, radius = m.scene.friction, m.scene.start_radius + inside
+    return friction.pinion_lever * radius, friction.gear_lever * (friction.radii - radius)
 
 
 @compiled(inline=True)
@@ -59,7 +59,7 @@ def set_limits(m: Model, t: float, w: float) -> None:
     w : float
         Surface velocity of the gear, which carries a pair along the path of contact.
     """
-    own = m.scene.friction
+    friction = m.scene.friction
     for i in range(m.work.notes.count):
         noted = m.work.notes.pair[i]
         if m.scene.population.flanks != 0:
@@ -68,7 +68,10 @@ def set_limits(m: Model, t: float, w: float) -> None:
         longer = _length_rate(m, noted, w)
         noted.force_rate = noted.slope * noted.gap_rate + longer * noted.force
         if not rubs_by_material(m):
-            noted.limit, noted.limit_slope = own.even * noted.contact, own.even * noted.contact_slope
+            noted.limit, noted.limit_slope = (
+                friction.even * noted.contact,
+                friction.even * noted.contact_slope,
+            )
         elif m.scene.nodes == 0:
             noted.limit, noted.limit_slope = _limit_of_materials(m, t, i)
         noted.limit_rate = noted.limit_slope * noted.gap_rate + longer * noted.limit
@@ -89,7 +92,7 @@ def _length_rate(m: Model, noted: Record, w: float) -> float:
 def _limit_of_materials(m: Model, t: float, i: int) -> tuple[float, float]:
     """Limit of the i-th pair of the notes and its slope in the gap, as its force is computed, with other laws."""
     noted = m.work.notes.pair[i]
-    own, k, gap = m.scene.friction, noted.history, noted.gap
+    friction, k, gap = m.scene.friction, noted.history, noted.gap
     h = m.state.history[k]
     shares = shares_of(m, flank_of_history(m, k), noted.pair, noted.position)
     limit, slope = limit_of_loading(m, gap, shares)
@@ -103,15 +106,15 @@ def _limit_of_materials(m: Model, t: float, i: int) -> tuple[float, float]:
                 m.scene.material[material].stretch_limit,
                 m.scene.material[material].gap_offset,
             )
-            if stretch_limit == 0.0 or own.scale[material] == 0.0:
+            if stretch_limit == 0.0 or friction.scale[material] == 0.0:
                 continue
             joined = h.joined[material]
             if turned:
                 joined = joined_height(joined, turning_gap, stretch_limit)
             if gap > joined:
-                table = m.tables[own.table_at[material] :]
+                table = m.tables[friction.table_at[material] :]
                 q, dq = stretched_value(table, gap + offset, joined + offset)
-                limit += own.scale[material] * shares[material] * q
-                slope += own.scale[material] * shares[material] * dq
+                limit += friction.scale[material] * shares[material] * q
+                slope += friction.scale[material] * shares[material] * dq
     length = contact_length(m, noted.position)
     return limit * length, slope * length

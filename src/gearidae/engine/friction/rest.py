@@ -34,7 +34,7 @@ from gearidae.engine.pairs.tooth_pairs import flank_of_history
 @compiled
 def list_elements(m: Model, t: float, y: Floats) -> None:
     """List the elements of gears at rest: the pairs that rub, and what resists the gear and the pinion, with joints."""
-    own, found, count = m.scene.friction, m.work.rubbing, 0
+    friction, work, count = m.scene.friction, m.work.rubbing, 0
     drive = coast = 0.0
     for i in range(m.work.notes.count):
         noted = m.work.notes.pair[i]
@@ -44,24 +44,24 @@ def list_elements(m: Model, t: float, y: Floats) -> None:
         else:
             drive += noted.force
         h = m.state.history[noted.history]
-        if own.flanks != 0 and h.slide != 0 and h.pair == noted.pair:
+        if friction.flanks != 0 and h.slide != 0 and h.pair == noted.pair:
             first, second = levers(m, noted.position)
-            _set(found.element[count], first, -second, noted.limit, HELD_PAIR)
-            found.element[count].history, found.element[count].coast = noted.history, int(on_coast)
+            _set(work.element[count], first, -second, noted.limit, HELD_PAIR)
+            work.element[count].history, work.element[count].coast = noted.history, int(on_coast)
             count += 1
-    found.pairs = count
-    found.load[0], found.load[1] = vector_sum(m, Mesh(drive, coast, 0.0, 0.0))
+    work.pairs = count
+    work.load[0], work.load[1] = vector_sum(m, Mesh(drive, coast, 0.0, 0.0))
     pin = pin_force(m, t, y, 0.0)
-    found.pin[0], found.pin[1] = pin
+    work.pin[0], work.pin[1] = pin
     if has_gear_element(m):
-        _set(found.element[count], 0.0, 1.0, gear_limit(m, t, y), HELD_GEAR)
-        found.element[count].hub = own.gear_hub
+        _set(work.element[count], 0.0, 1.0, gear_limit(m, t, y), HELD_GEAR)
+        work.element[count].hub = friction.gear_hub
         count += 1
-    if own.pinion_rubs != 0:
-        _set(found.element[count], 1.0, 0.0, pinion_limit(m, pin), HELD_PINION)
-        found.element[count].hub = own.pinion_hub
+    if friction.pinion_rubs != 0:
+        _set(work.element[count], 1.0, 0.0, pinion_limit(m, pin), HELD_PINION)
+        work.element[count].hub = friction.pinion_hub
         count += 1
-    found.count = count
+    work.count = count
 
 
 @compiled(inline=True)
@@ -77,25 +77,25 @@ def rest_margin(m: Model, pinion: float, gear: float) -> float:
     Below zero where no frictions balance them. Without hubs it is the least distance: the forces that are held are a
     zonotope, with one inequality for each element, perpendicular to it, and one along it, as all may be parallel.
     """
-    found = m.work.rubbing
-    if found.count == 0:
+    work = m.work.rubbing
+    if work.count == 0:
         return -math.hypot(pinion, gear)
     if has_hubs(m):
         return equilibrium_margin(m, pinion, gear)
     least = math.inf
-    for i in range(found.count):
-        one = found.element[i]
-        least = min(least, _held_along(m, -one.gear, one.pinion, pinion, gear))
-        least = min(least, _held_along(m, one.pinion, one.gear, pinion, gear))
+    for i in range(work.count):
+        element = work.element[i]
+        least = min(least, _held_along(m, -element.gear, element.pinion, pinion, gear))
+        least = min(least, _held_along(m, element.pinion, element.gear, pinion, gear))
     return least
 
 
 @compiled(inline=True)
 def _held_along(m: Model, x: float, y: float, pinion: float, gear: float) -> float:
     """How much more force all elements hold along a direction than is there."""
-    found, held = m.work.rubbing, 0.0
-    for j in range(found.count):
-        other = found.element[j]
+    work, held = m.work.rubbing, 0.0
+    for j in range(work.count):
+        other = work.element[j]
         held += other.limit * abs(x * other.pinion + y * other.gear)
     return (held - abs(x * pinion + y * gear)) / math.hypot(x, y)
 
@@ -122,14 +122,14 @@ class Way(NamedTuple):
 @compiled
 def way_from_rest(m: Model, pinion: float, gear: float) -> Way:
     """Accelerations of gears at rest under forces that are not held, with the elements of `list_elements`."""
-    found = m.work.rubbing
+    work = m.work.rubbing
     a1, a2 = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass
     best = Way(a1 * pinion, a2 * gear, -math.inf, -1)
-    for i in range(found.count):
-        one = found.element[i]
+    for i in range(work.count):
+        element = work.element[i]
         for side in range(2):
             sign = 1.0 - 2.0 * side
-            x, y = -sign * one.gear, sign * one.pinion
+            x, y = -sign * element.gear, sign * element.pinion
             best = _better(best, _along(m, pinion, gear, x, y, i))
             for beyond in range(2):
                 best = _better(best, _between(m, pinion, gear, x, y, i, 1.0 - 2.0 * beyond))
@@ -137,8 +137,8 @@ def way_from_rest(m: Model, pinion: float, gear: float) -> Way:
 
 
 @compiled(inline=True)
-def _better(one: Way, other: Way) -> Way:
-    return other if other.reserve > one.reserve else one
+def _better(way: Way, other: Way) -> Way:
+    return other if other.reserve > way.reserve else way
 
 
 class _Slipping(NamedTuple):
@@ -155,14 +155,14 @@ class _Slipping(NamedTuple):
 @compiled
 def _slipping(m: Model, pinion: float, gear: float, x: float, y: float, i: int, side: float) -> _Slipping:
     """All elements slip as both gears accelerate along (x, y), the i-th and those like it as `side` says."""
-    found = m.work.rubbing
-    one, by_pinion, by_gear = found.element[i], 0.0, 0.0
-    along, over = found.load[0], found.load[1]
-    for j in range(found.count):
-        other = found.element[j]
+    work = m.work.rubbing
+    element, by_pinion, by_gear = work.element[i], 0.0, 0.0
+    along, over = work.load[0], work.load[1]
+    for j in range(work.count):
+        other = work.element[j]
         speed = other.pinion * x + other.gear * y
         if j == i or speed == 0.0:
-            speed = side * (other.pinion * one.pinion + other.gear * one.gear)
+            speed = side * (other.pinion * element.pinion + other.gear * element.gear)
         if speed == 0.0:
             continue
         slip = math.copysign(1.0, speed)
@@ -188,22 +188,22 @@ def _loads(m: Model, s: _Slipping) -> Loads:
 @compiled
 def _along(m: Model, pinion: float, gear: float, x: float, y: float, i: int) -> Way:
     """Accelerations in a direction in which the i-th element holds."""
-    one, s = m.work.rubbing.element[i], _slipping(m, pinion, gear, x, y, i, 0.0)
+    element, s = m.work.rubbing.element[i], _slipping(m, pinion, gear, x, y, i, 0.0)
     a1, a2 = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass
-    easy = a1 * one.pinion**2 + a2 * one.gear**2
-    held = (a1 * one.pinion * s.pinion + a2 * one.gear * s.gear) / easy
-    falls, gear_falls = a1 * one.pinion * s.by_pinion / easy, a2 * one.gear * s.by_gear / easy
+    easy = a1 * element.pinion**2 + a2 * element.gear**2
+    held = (a1 * element.pinion * s.pinion + a2 * element.gear * s.gear) / easy
+    falls, gear_falls = a1 * element.pinion * s.by_pinion / easy, a2 * element.gear * s.by_gear / easy
     near = far = _loads(m, s)
     room = math.inf
-    if one.hold == HELD_PAIR:
+    if element.hold == HELD_PAIR:
         total, pin = (s.along, s.over), (m.work.rubbing.pin[0], m.work.rubbing.pin[1])
-        near, far, room = loads_with_friction(m, one.coast != 0, total, held, (falls, gear_falls), pin)
+        near, far, room = loads_with_friction(m, element.coast != 0, total, held, (falls, gear_falls), pin)
     best = Way(0.0, 0.0, -math.inf, i)
     for which in range(2):
         loads = far if which else near
         on_pinion, on_gear = s.pinion - s.by_pinion * loads.pinion, s.gear - s.by_gear * loads.gear
         slope = x * on_pinion + y * on_gear
-        limit = one.limit + one.hub * (loads.pinion if one.hold == HELD_PINION else loads.gear)
+        limit = element.limit + element.hub * (loads.pinion if element.hold == HELD_PINION else loads.gear)
         reserve = limit - abs(held - falls * loads.pinion - gear_falls * loads.gear)
         reserve = min(reserve, room, slope / math.hypot(x, y))
         if reserve > best.reserve:
@@ -215,15 +215,15 @@ def _along(m: Model, pinion: float, gear: float, x: float, y: float, i: int) -> 
 @compiled
 def _between(m: Model, pinion: float, gear: float, x: float, y: float, i: int, side: float) -> Way:
     """Accelerations with the directions of slip just beside that direction."""
-    found, s = m.work.rubbing, _slipping(m, pinion, gear, x, y, i, side)
+    work, s = m.work.rubbing, _slipping(m, pinion, gear, x, y, i, side)
     a1, a2 = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass
-    one, loads, reserve = found.element[i], _loads(m, s), math.inf
+    element, loads, reserve = work.element[i], _loads(m, s), math.inf
     a, b = a1 * (s.pinion - s.by_pinion * loads.pinion), a2 * (s.gear - s.by_gear * loads.gear)
-    for j in range(found.count):
-        other = found.element[j]
+    for j in range(work.count):
+        other = work.element[j]
         speed = other.pinion * x + other.gear * y
         if j == i or speed == 0.0:
-            speed = side * (other.pinion * one.pinion + other.gear * one.gear)
+            speed = side * (other.pinion * element.pinion + other.gear * element.gear)
         follows = (other.pinion * a + other.gear * b) / (a1 * other.pinion**2 + a2 * other.gear**2)
         reserve = min(reserve, math.copysign(1.0, speed) * follows)
     return Way(a, b, reserve, -1)

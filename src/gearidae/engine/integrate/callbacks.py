@@ -50,7 +50,7 @@ def _unasked(t, yy, yp, rr, data):  # type: ignore[no-untyped-def]
 def _weights(yy, weights, data):  # type: ignore[no-untyped-def]
     m = model_at(data)
     count = m.scene.states
-    if m.work.adams.own != 0:  # nodes are eliminated
+    if m.work.adams.native_newton != 0:  # nodes are eliminated
         count -= m.scene.nodes * m.scene.histories
     out = ptr.numbers(weights, count)
     first = m.scene.error_weights_at

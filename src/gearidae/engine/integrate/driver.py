@@ -80,8 +80,8 @@ def ending_of_flag(flag: int, alone: bool = False) -> Ending:
 
 def update_statistics(statistics: Statistics, progress: Record) -> None:
     """Take a driver's counters over."""
-    for each in COUNTERS:
-        setattr(statistics, each.name, int(progress[each.name]))
+    for counter in COUNTERS:
+        setattr(statistics, counter.name, int(progress[counter.name]))
 
 
 class SampleReader(Protocol):

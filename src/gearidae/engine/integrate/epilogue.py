@@ -9,9 +9,8 @@ from gearidae.engine.events.events import ROOT, STOP, chatters, handle_mesh
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.pair_events import find_event, take_event
 from gearidae.engine.events.record import EVENTS_AT_ONCE
-from gearidae.engine.events.run_stop import stop_guard
-from gearidae.engine.events.schedule_knots import keeps_checkpoint, next_stop, pass_knot
 from gearidae.engine.events.sliding import follow_creeping, follow_sliding
+from gearidae.engine.events.stops import keeps_checkpoint, next_stop, pass_knot, stop_guard
 from gearidae.engine.followers import in_turn as followers
 from gearidae.engine.followers.passages import PASSAGES_AT_ONCE, write_passages
 from gearidae.engine.integrate.driver import (
@@ -106,11 +105,11 @@ def handle(m: Model, t: float, y: Floats, yp: Floats, out: Output) -> bool:
     count, crossed, restart = handle_mesh(m, t, y, events, first)
     for i in range(list_known(m, y) if m.scene.population.flanks == 0 else 0):
         k = m.work.known[i]
-        found = find_event(m, y, flank_of_history(m, k), m.state.history[k].pair, k)
-        if found.touches or found.stretches or found.turns:
-            joined |= found.turns and m.state.history[k].direction < 0.0
-            followers.event(m, t, y, yp, found)
-            count = take_event(m, t, y, found, events, count)
+        event = find_event(m, y, flank_of_history(m, k), m.state.history[k].pair, k)
+        if event.touches or event.stretches or event.turns:
+            joined |= event.turns and m.state.history[k].direction < 0.0
+            followers.event(m, t, y, yp, event)
+            count = take_event(m, t, y, event, events, count)
     if m.scene.population.flanks != 0:
         if flip_asperities(m, y):
             restart = True

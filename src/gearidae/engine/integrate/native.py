@@ -15,7 +15,7 @@ import numpy as np
 from gearidae.arrays import Ints
 from gearidae.compiled import compiled
 from gearidae.engine.elastic.elimination import begin_deflections
-from gearidae.engine.events.schedule_knots import next_stop
+from gearidae.engine.events.stops import next_stop
 from gearidae.engine.formulas import adams
 from gearidae.engine.integrate.by_address import observe_at
 from gearidae.engine.integrate.callbacks import callbacks
@@ -71,7 +71,7 @@ def _count(s: Stepper) -> None:
     progress.steps += _new(cell, counted, 0)
     progress.residual_evaluations += a.evaluations  # of residual and Jacobian at once
     progress.jacobian_evaluations += a.evaluations
-    if a.own == 0:
+    if a.native_newton == 0:
         sun.IDAGetNumResEvals(ida, cell.ctypes.data)
         progress.residual_evaluations += _new(cell, counted, 1)
         sun.IDAGetNumJacEvals(ida, cell.ctypes.data)
@@ -97,7 +97,7 @@ def restart(s: Stepper, stop: float) -> int:
     flag |= sun.IDASetInitStep(ida, first_step(m, t, s.y, s.yp, stop - t))
     flag |= sun.IDASetStopTime(ida, stop)
     flag |= sun.IDASetMaxStep(ida, longest_step(m))
-    if m.work.adams.own != 0:
+    if m.work.adams.native_newton != 0:
         if m.scene.nodes > 0:
             begin_deflections(m, t, s.y)
         flag |= configure_ida(ida, m.work.adams)
@@ -159,7 +159,7 @@ def advance(place: int, arrays: Arrays, out: Output, budget: int) -> None:
     driver = m.work.driver
     flag = driver.pending - 1
     if driver.pending < 0:  # a fresh start
-        m.work.adams.wanted = m.work.adams.own
+        m.work.adams.wanted = m.work.adams.native_newton
         driver.error = restart(s, next_stop(m))
         driver.pending = 0
     while (

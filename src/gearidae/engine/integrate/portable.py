@@ -18,7 +18,7 @@ from sksundae.ida import IDA
 
 from gearidae.compiled import compiled
 from gearidae.engine.events.events import ROOT, STOP
-from gearidae.engine.events.schedule_knots import next_stop
+from gearidae.engine.events.stops import next_stop
 from gearidae.engine.integrate.by_address import (
     finish_step_at,
     first_dip_at,

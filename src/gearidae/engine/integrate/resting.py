@@ -15,7 +15,7 @@ from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.events.events import ROOT, STOP
 from gearidae.engine.events.rest_search import rest_until
-from gearidae.engine.events.schedule_knots import next_stop
+from gearidae.engine.events.stops import next_stop
 from gearidae.engine.model.record_types import AT_REST, FREE, HELD_GEAR
 from gearidae.engine.model.state import DRIVE, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at

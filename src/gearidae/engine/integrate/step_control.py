@@ -186,7 +186,7 @@ def change_wanted(m: Model, y: Floats, yp: Floats) -> bool:
         State and rates at an accepted time.
     """
     a, first = m.work.adams, m.scene.error_weights_at
-    if a.own == 0:
+    if a.native_newton == 0:
         return False
     resolution = 0.0
     for j in range(y.size):

@@ -63,7 +63,7 @@ MOTION: Final = 4  # states of a motion
 
 def record_type(*fields: tuple[Any, ...] | Quantity) -> np.dtype[Any]:
     """Record type whose fields are attributes, in compiled code and in Python alike."""
-    plain = [_plain(each) if isinstance(each, Quantity) else each for each in fields]
+    plain = [_plain(field) if isinstance(field, Quantity) else field for field in fields]
     return np.dtype((_Fields, np.dtype(plain, align=True)))
 
 

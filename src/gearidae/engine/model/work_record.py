@@ -49,7 +49,7 @@ RESISTANCE: Final = record_type(  # the same of drag and damping, which are inte
 )
 
 ADAMS: Final = record_type(
-    ("own", INT),  # 1 with the package's own Newton iteration, 0 with IDA's
+    ("native_newton", INT),  # 1 with the package's own Newton iteration, 0 with IDA's
     ("evaluations", INT),  # of the residual with its slopes, so far
     ("failures", INT),  # of Newton's iteration, so far
     ("contraction_rate", REAL),  # contraction of Newton's iteration: next correction over this one [1]

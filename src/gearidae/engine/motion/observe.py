@@ -1,4 +1,7 @@
-"""From scaled states to what is recorded, in SI units: the columns of `gearidae.records.columns`."""
+"""From scaled states to what is recorded, in SI units: the columns of `gearidae.records.columns`.
+
+The smallest distance of the flanks among them is of rigid flanks in the gap, of elastic ones anywhere along a contact.
+"""
 
 from __future__ import annotations
 
@@ -6,13 +9,20 @@ import math
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
+from gearidae.engine.elastic.rows import first_unknown
 from gearidae.engine.model.record_types import FREE
-from gearidae.engine.model.state import DRIVE, GEARS, LOAD, PHASE, Floats, Model, U, V, W
+from gearidae.engine.model.state import COAST, DRIVE, GEARS, LOAD, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
-from gearidae.engine.motion.separation import separation
 from gearidae.engine.motion.shafts import friction_at_gear, resisting_force
 from gearidae.engine.pairs.shaft_angle import angle_of_shaft, torque_angle
-from gearidae.engine.pairs.tooth_pairs import all_pairs, pair_at, pair_gap, static_error
+from gearidae.engine.pairs.tooth_pairs import (
+    all_pairs,
+    gap_and_rate,
+    history_of,
+    pair_at,
+    pair_gap,
+    static_error,
+)
 from gearidae.engine.population.forces import asperities_joined
 from gearidae.engine.torques.torque import torque_force
 from gearidae.records.columns import GEAR, GEAR_POPULATION, ROLLER, ROLLER_POPULATION
@@ -99,3 +109,29 @@ def _write_loads(m: Model, loads: tuple[float, float, float], row: Floats) -> in
     for i in range(count):
         row[row.size - count + i] = abs(loads[i]) * m.scene.force_unit
     return count
+
+
+@compiled_once(SOLVER)
+def separation(m: Model, y: Floats) -> float:
+    """Smallest distance of the flanks at a state, deflection included, scaled."""
+    if m.scene.nodes == 0:
+        return rigid_separation(m, y[U])
+    least = math.inf
+    reach = all_pairs(m, y)
+    for i in range(reach.total):
+        coast, pair = pair_at(reach, i)
+        k = history_of(m, coast, pair)
+        gap, _ = gap_and_rate(m, coast, pair, y)
+        if gap >= m.scene.cutoff or m.state.history[k].pair != pair:
+            least = min(least, gap)
+            continue
+        first = first_unknown(m, k)
+        for node in range(m.scene.nodes):
+            least = min(least, gap + m.tables[m.scene.profile_at + node] + y[first + node])
+    return least
+
+
+@compiled
+def rigid_separation(m: Model, u: float) -> float:
+    """Distance of the nearer flank of pairs on the path of contact."""
+    return min(m.scene.clearance[DRIVE] - u, m.scene.clearance[COAST] + u)

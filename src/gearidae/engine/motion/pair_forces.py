@@ -27,7 +27,6 @@ from gearidae.engine.energy.radius import curvature_force
 from gearidae.engine.model.state import Floats, Model
 from gearidae.engine.pairs.attraction_force import attraction_force
 from gearidae.engine.pairs.coverage import note_shares, rubs_by_material, shares_of
-from gearidae.engine.pairs.notes import note_force
 from gearidae.engine.pairs.pair_force import (
     NO_MESH_FORCES,
     MeshForces,
@@ -179,7 +178,7 @@ def with_deflections(m: Model, y: Floats) -> Floats:
 @compiled
 def is_eliminated(m: Model) -> bool:
     """Whether there are nodes that the integrator does not see."""
-    return bool(m.scene.nodes > 0 and m.work.adams.own != 0)
+    return bool(m.scene.nodes > 0 and m.work.adams.native_newton != 0)
 
 
 @compiled
@@ -212,3 +211,17 @@ def _ask_for_deflections(m: Model, t: float, y: Floats, kind: int) -> None:
             m.work.settling[pair.k].reached = 1
             note_shares(m, pair.k, coast, number, pair.place)
             pair_deflections(m, kind, t, y, pair, contact_length(m, pair.place))
+
+
+@compiled(inline=True)
+def note_force(m: Model, pair: PairState, f: PairForce) -> None:
+    """Note a pair and its force."""
+    notes = m.work.notes
+    noted = notes.pair[notes.count]
+    noted.history, noted.pair, noted.position = pair.k, pair.number, pair.place
+    noted.gap, noted.gap_rate, noted.relief = pair.gap, pair.rate, pair.slope
+    noted.force, noted.slope, noted.drift = f.load, f.by_gap, f.by_place * pair.place_rate
+    noted.contact, noted.contact_slope = f.contact, f.contact_by_gap
+    noted.limit, noted.limit_slope = f.limit, f.limit_by_gap
+    noted.limit_rate = f.limit_by_place * pair.place_rate + f.limit_by_gap * pair.rate
+    notes.count += 1

@@ -193,15 +193,15 @@ def friction_at_gear(m: Model, t: float, y: Floats) -> tuple[float, float, tuple
     friction is zero and the dry resistance takes what it can.
     """
     turn, pinion, gear = forces_at_shafts(m, t, y)
-    found = solve_shafts(m, t, y, turn, pinion, gear)
-    loads = found.loads.pinion, found.loads.gear, math.hypot(found.pin[0], found.pin[1])
+    shafts = solve_shafts(m, t, y, turn, pinion, gear)
+    loads = shafts.loads.pinion, shafts.loads.gear, math.hypot(shafts.pin[0], shafts.pin[1])
     friction = 0.0
     for i in range(m.work.notes.count if m.scene.friction.flanks != 0 else 0):
         noted = m.work.notes.pair[i]
         second = levers(m, noted.position)[1]
         friction += direction(m, noted) * noted.limit * second
         if m.state.hold == HELD_PAIR and noted.history == m.state.held_pair:
-            friction += found.held * second
+            friction += shafts.held * second
     if m.state.hold == AT_REST or m.state.hold == HELD_GEAR:  # without a speed, and so without drags
         dry = dry_force(m, t, y)
         return friction, min(max(gear + friction, -dry), dry), loads

@@ -1,7 +1,12 @@
-"""Shares of the materials of a pair; tables of them by tooth and place are `gearidae.scene.coating_table`.
+r"""Shares of the materials of a pair, and its attraction; tables by tooth and place are `gearidae.scene.coating_table`.
 
 Without such tables the shares are in the materials' force scales, and the loading branches of all materials have been
 added up at set-up: shares are then ones, which do not change.
+
+The attraction across the gap is the closed form of `gearidae.contact.attraction`, scaled. Per unit length a material
+with the constant c pulls with :math:`-c\,h^{-5/2}`, h its gap with its offset. It would do so at any distance: the pull
+at the cut-off is taken off everywhere, so that force and energy end there continuously and nothing is lost where a pair
+leaves.
 """
 
 from __future__ import annotations
@@ -13,7 +18,6 @@ from gearidae.compiled import compiled
 from gearidae.contact.kernels.evaluate import mixed_value
 from gearidae.contact.kernels.law import N_LOADING, loading_value
 from gearidae.engine.model.state import Model
-from gearidae.engine.pairs.attraction import attraction
 
 Shares: TypeAlias = tuple[float, float, float]
 """A number for each of bare, coated and mixed, the order of the materials."""
@@ -36,17 +40,19 @@ def fraction_of(m: Model, side: int, coast: int, pair: int, inside: float) -> Fr
 
     On the coast flank the gear's tooth is the next one.
     """
-    own = m.scene.coverage[side]
-    row = own.values_at + int(pair + m.state.turns + side * coast) % own.teeth * own.places
-    along = inside * own.place_scale - 0.5
-    last = min(max(math.floor(along), -1), own.places - 1)  # before the first middle, or behind the last one
+    coverage = m.scene.coverage[side]
+    row = coverage.values_at + int(pair + m.state.turns + side * coast) % coverage.teeth * coverage.places
+    along = inside * coverage.place_scale - 0.5
+    last = min(
+        max(math.floor(along), -1), coverage.places - 1
+    )  # before the first middle, or behind the last one
     before = m.tables[row + max(last, 0)]
-    change = m.tables[row + min(last + 1, own.places - 1)] - before
-    u, rise = along - last, change * own.place_scale
+    change = m.tables[row + min(last + 1, coverage.places - 1)] - before
+    u, rise = along - last, change * coverage.place_scale
     return Fraction(
         before + change * (u * u * u * (10.0 - 15.0 * u + 6.0 * u * u)),
         30.0 * rise * u * u * (1.0 - u) * (1.0 - u),
-        60.0 * rise * own.place_scale * u * (1.0 - u) * (1.0 - 2.0 * u),
+        60.0 * rise * coverage.place_scale * u * (1.0 - u) * (1.0 - 2.0 * u),
     )
 
 
@@ -67,13 +73,13 @@ def share_changes(m: Model, coast: int, pair: int, inside: float) -> tuple[Share
     if m.scene.patches != 0:
         return (1.0 - f.value, f.value, 0.0), (-f.slope, f.slope, 0.0), (-f.bend, f.bend, 0.0)
     g = fraction_of(m, 1, coast, pair, inside)
-    one, one_slope, one_bend = f.value + g.value, f.slope + g.slope, f.bend + g.bend
+    total, total_slope, total_bend = f.value + g.value, f.slope + g.slope, f.bend + g.bend
     both, slope = f.value * g.value, f.slope * g.value + f.value * g.slope
     bend = f.bend * g.value + 2.0 * f.slope * g.slope + f.value * g.bend
     return (
-        (1.0 - one + both, both, one - 2.0 * both),
-        (slope - one_slope, slope, one_slope - 2.0 * slope),
-        (bend - one_bend, bend, one_bend - 2.0 * bend),
+        (1.0 - total + both, both, total - 2.0 * both),
+        (slope - total_slope, slope, total_slope - 2.0 * slope),
+        (bend - total_bend, bend, total_bend - 2.0 * bend),
     )
 
 
@@ -87,8 +93,8 @@ def shares_of(m: Model, coast: int, pair: int, inside: float) -> Shares:
 def note_shares(m: Model, k: int, coast: int, pair: int, inside: float) -> None:
     """Note the shares of the materials in the pair with the k-th history, for the nodes of its elastic contact."""
     if m.scene.by_place != 0:
-        own = m.work.shares[k]
-        own[0], own[1], own[2] = shares_of(m, coast, pair, inside)
+        shares = m.work.shares[k]
+        shares[0], shares[1], shares[2] = shares_of(m, coast, pair, inside)
 
 
 @compiled
@@ -96,8 +102,8 @@ def noted_shares(m: Model, k: int) -> Shares:
     """Shares that `note_shares` has noted last."""
     if m.scene.by_place == 0:
         return WHOLE
-    own = m.work.shares[k]
-    return own[0], own[1], own[2]
+    shares = m.work.shares[k]
+    return shares[0], shares[1], shares[2]
 
 
 @compiled(inline=True)
@@ -170,3 +176,26 @@ def path_position(m: Model, coast: int, pair: int, phase: float) -> float:
     """Position of a pair along the path of contact, clipped to it, in pitches."""
     along = m.scene.coast_phase + pair - phase if coast else phase - pair
     return min(max(along, 0.0), m.scene.contact_ratio)
+
+
+class Pull(NamedTuple):
+    """Attraction of one material per unit length: force, its slope in the gap, and energy."""
+
+    force: float
+    slope: float
+    energy: float
+
+
+@compiled
+def attraction(m: Model, material: int, gap: float) -> Pull:
+    """Attraction that a material of a pair would have if it covered everything, or with its share in the constant."""
+    surface = m.scene.material[material]
+    c, far = surface.attraction, m.scene.cutoff + surface.gap_offset
+    if c == 0.0 or gap >= m.scene.cutoff:
+        return Pull(0.0, 0.0, 0.0)
+    h = gap + surface.gap_offset
+    near = max(h, m.scene.attraction_floor)
+    pull, last = c / (near * near * math.sqrt(near)), c / (far * far * math.sqrt(far))
+    slope = 2.5 * pull / near if h > m.scene.attraction_floor else 0.0
+    energy = -2.0 / 3.0 * pull * near + pull * (h - near)
+    return Pull(last - pull, slope, energy + 2.0 / 3.0 * last * far - last * (h - far))

@@ -286,8 +286,8 @@ def pair_force(
         if turned:
             turning_gap = extreme_gap(t - m.state.time, h.gap, h.gap_rate, gap, rate)
         for material in range(MATERIALS):
-            own = m.scene.material[material]
-            limit = own.stretch_limit
+            surface = m.scene.material[material]
+            limit = surface.stretch_limit
             if limit == 0.0:
                 continue
             joined = h.joined[material]
@@ -301,9 +301,9 @@ def pair_force(
             if stretch < limit and not turned and kept:
                 q, dq = branch_value(m.rows[first:], stretch)
             else:
-                offset = own.gap_offset
-                q, dq = stretched_value(m.tables[own.table_at :], gap + offset, joined + offset)
-            scale = own.force_scale * shares[material]
+                offset = surface.gap_offset
+                q, dq = stretched_value(m.tables[surface.table_at :], gap + offset, joined + offset)
+            scale = surface.force_scale * shares[material]
             force += scale * q
             slope += scale * dq
     length = contact_length(m, inside)
@@ -313,10 +313,10 @@ def pair_force(
 @compiled
 def set_joined(m: Model, k: int, material: int, joined: float) -> None:
     """Store the joined height of a turning point, and work out the branch that starts from it."""
-    h, own = m.state.history[k], m.scene.material[material]
+    h, surface = m.state.history[k], m.scene.material[material]
     h.joined[material] = joined
-    number = loading_value(m.tables, own.number_at, joined + own.gap_offset)[0]
-    h.adhered_energy[material] = -own.joining_energy * number
+    number = loading_value(m.tables, surface.number_at, joined + surface.gap_offset)[0]
+    h.adhered_energy[material] = -surface.joining_energy * number
     set_branches(m, k, material)
 
 
@@ -327,10 +327,10 @@ def set_branches(m: Model, k: int, material: int) -> None:
     A law that is integrated on demand keeps no branches, nor does an elastic contact. That of the stored energy
     waits until the energy balance needs it.
     """
-    own = m.scene.material[material]
-    table = m.tables[own.table_at :]
+    surface = m.scene.material[material]
+    table = m.tables[surface.table_at :]
     if m.scene.branch_length > 0 and branch_length(table) > 0:
-        joined = m.state.history[k].joined[material] + own.gap_offset
+        joined = m.state.history[k].joined[material] + surface.gap_offset
         set_branch(table, joined, m.rows[force_branch(m, k, material) :])
         m.rows[energy_branch(m, k, material) + B_PIECES] = 0.0
 

@@ -40,15 +40,15 @@ PLACE_MARGIN: Final = 0.01  # pitches
 @compiled(inline=True)
 def covers(m: Model, k: int, gap: float, place: float) -> bool:
     """Whether the candidates of the k-th history hold at a gap and a place of its pair."""
-    own = m.work.contact[k]
-    return bool(own.known != 0 and gap >= own.gap and own.low <= place <= own.high)
+    contact = m.work.contact[k]
+    return bool(contact.known != 0 and gap >= contact.gap and contact.low <= place <= contact.high)
 
 
 @compiled
 def forget(m: Model, k: int) -> None:
     """Empty the candidates of a history that is about another pair, or none: nothing of it is joined."""
-    own = m.work.contact[k]
-    own.known = own.count = own.joined = own.started = 0
+    contact = m.work.contact[k]
+    contact.known = contact.count = contact.joined = contact.started = 0
 
 
 @compiled_once(POPULATION)
@@ -64,13 +64,13 @@ def choose(m: Model, k: int, coast: int, pair: int, gap: float, low: float, high
     gap, low, high : float
         Least gap, and places along the path between which they are to hold; margins are added.
     """
-    own, index, joined, kept = (
+    contact, index, joined, kept = (
         m.work.contact[k],
         column(m, k, INDEX),
         column(m, k, JOINED),
         column(m, k, REMEMBERED),
     )
-    for j in range(own.joined):
+    for j in range(contact.joined):
         m.rows[kept + j] = m.rows[index + int(m.rows[joined + j])]
     choose_beside(m, k, coast, pair, gap, low, high)
 
@@ -78,14 +78,14 @@ def choose(m: Model, k: int, coast: int, pair: int, gap: float, low: float, high
 @compiled
 def choose_beside(m: Model, k: int, coast: int, pair: int, gap: float, low: float, high: float) -> None:
     """Candidates where the joined asperities are in the column `REMEMBERED`."""
-    own, scene, kept = m.work.contact[k], m.scene.population, column(m, k, REMEMBERED)
-    own.known, own.count, own.gap = 1, 0, gap - GAP_MARGIN
-    own.low, own.high = low - PLACE_MARGIN, high + PLACE_MARGIN
-    least = own.gap - scene.join  # a candidate is higher
+    contact, scene, kept = m.work.contact[k], m.scene.population, column(m, k, REMEMBERED)
+    contact.known, contact.count, contact.gap = 1, 0, gap - GAP_MARGIN
+    contact.low, contact.high = low - PLACE_MARGIN, high + PLACE_MARGIN
+    least = contact.gap - scene.join  # a candidate is higher
     flank, merged = flank_of(m, coast, pair), 0
     if scene.highest > least:
-        before, after = spot_at(m, own.low, False), spot_at(m, own.high, False)
-        middle = spot_at(m, 0.5 * (own.low + own.high), False)
+        before, after = spot_at(m, contact.low, False), spot_at(m, contact.high, False)
+        middle = spot_at(m, 0.5 * (contact.low + contact.high), False)
         bend = 0.5 * scene.steepness / max(before.radius, middle.radius, after.radius)
         reach = math.sqrt((scene.highest - least) / bend)
         level = 0
@@ -98,15 +98,15 @@ def choose_beside(m: Model, k: int, coast: int, pair: int, gap: float, low: floa
             arc = m.tables[scene.arcs_at + asperity]
             if arc > after.arc + reach:
                 break
-            while merged < own.joined and m.rows[kept + merged] < asperity:
+            while merged < contact.joined and m.rows[kept + merged] < asperity:
                 _add(m, k, int(m.rows[kept + merged]), 1.0)
                 merged += 1
-            if merged < own.joined and m.rows[kept + merged] == asperity:
+            if merged < contact.joined and m.rows[kept + merged] == asperity:
                 _add(m, k, asperity, 1.0)
                 merged += 1
-            elif _may_join(m, k, asperity, own.gap, before, after, bend):
+            elif _may_join(m, k, asperity, contact.gap, before, after, bend):
                 _add(m, k, asperity, -1.0)
-    while merged < own.joined:
+    while merged < contact.joined:
         _add(m, k, int(m.rows[kept + merged]), 1.0)
         merged += 1
     list_joined(m, k)
@@ -115,12 +115,12 @@ def choose_beside(m: Model, k: int, coast: int, pair: int, gap: float, low: floa
 @compiled
 def list_joined(m: Model, k: int) -> None:
     """Note which candidates of a history are joined, in the order of places."""
-    own, sign, joined = m.work.contact[k], column(m, k, SIGN), column(m, k, JOINED)
-    own.joined = 0
-    for j in range(own.count):
+    contact, sign, joined = m.work.contact[k], column(m, k, SIGN), column(m, k, JOINED)
+    contact.joined = 0
+    for j in range(contact.count):
         if m.rows[sign + j] > 0.0:
-            m.rows[joined + own.joined] = j
-            own.joined += 1
+            m.rows[joined + contact.joined] = j
+            contact.joined += 1
 
 
 @compiled(inline=True)
@@ -147,19 +147,19 @@ def _first_from(m: Model, level: int, flank: int, arc: float) -> int:
 @compiled(inline=True)
 def _kind(m: Model, k: int, asperity: int) -> int:
     """Where the numbers of an asperity's kind are; in the pair of the k-th history, if the gear's tooth matters."""
-    own = m.scene.population
-    if own.by_gear_tooth != 0 and not _gear_covered(m, k, asperity):
-        return int(m.tables[own.bare_kinds_at + asperity])
-    return int(m.tables[own.kinds_at + asperity])
+    population = m.scene.population
+    if population.by_gear_tooth != 0 and not _gear_covered(m, k, asperity):
+        return int(m.tables[population.bare_kinds_at + asperity])
+    return int(m.tables[population.kinds_at + asperity])
 
 
 @compiled
 def _gear_covered(m: Model, k: int, asperity: int) -> bool:
     """Whether an asperity meets a covered place of the gear's tooth in the pair of the k-th history."""
-    own, coast = m.scene.population, flank_of_history(m, k)
-    place = place_of_arc(m, m.tables[own.arcs_at + asperity])
+    population, coast = m.scene.population, flank_of_history(m, k)
+    place = place_of_arc(m, m.tables[population.arcs_at + asperity])
     fraction = fraction_of(m, 1, coast, m.state.history[k].pair, place).value
-    return bool(m.tables[own.gear_numbers_at + asperity] < fraction)
+    return bool(m.tables[population.gear_numbers_at + asperity] < fraction)
 
 
 @compiled(inline=True)
@@ -174,12 +174,12 @@ def _may_join(m: Model, k: int, asperity: int, gap: float, before: Spot, after: 
 @compiled
 def _add(m: Model, k: int, asperity: int, sign: float) -> None:
     """Add an asperity to the candidates of a history, joined or free by its sign."""
-    scene, own = m.scene.population, m.work.contact[k]
-    j, kind = own.count, _kind(m, k, asperity)
+    scene, contact = m.scene.population, m.work.contact[k]
+    j, kind = contact.count, _kind(m, k, asperity)
     m.rows[column(m, k, INDEX) + j] = asperity
     m.rows[column(m, k, ARC) + j] = m.tables[scene.arcs_at + asperity]
     m.rows[column(m, k, HEIGHT) + j] = m.tables[scene.heights_at + asperity] - m.tables[kind + K_OFFSET]
     m.rows[column(m, k, KIND) + j] = kind
     m.rows[column(m, k, SIGN) + j] = sign
     m.rows[column(m, k, BOUND) + j] = m.tables[kind + (K_DETACH if sign > 0.0 else K_JOIN)]
-    own.count += 1
+    contact.count += 1

@@ -42,15 +42,15 @@ KINDS: Final = 10
 @compiled(inline=True)
 def column(m: Model, k: int, field: int) -> np.uintp:
     """Place of a column of the k-th history's candidates among the rows."""
-    own = m.scene.population
-    return np.uintp(own.rows_at + (k * FIELDS + field) * own.capacity)
+    population = m.scene.population
+    return np.uintp(population.rows_at + (k * FIELDS + field) * population.capacity)
 
 
 def joined_candidates(m: Model, k: int) -> Floats:
     """Return the columns of the joined candidates of the k-th history, shape (FIELDS, joined)."""
-    own = m.scene.population
-    start = own.rows_at + k * FIELDS * own.capacity
-    columns = m.rows[start : start + FIELDS * own.capacity].reshape(FIELDS, -1)
+    population = m.scene.population
+    start = population.rows_at + k * FIELDS * population.capacity
+    columns = m.rows[start : start + FIELDS * population.capacity].reshape(FIELDS, -1)
     return columns[:, columns[JOINED, : m.work.contact[k].joined].astype(np.int64)]
 
 

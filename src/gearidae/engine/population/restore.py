@@ -19,12 +19,12 @@ def take_joined(m: Model, y: Floats, joined: Floats) -> int:
         forget(m, k)
     for i in range(list_known(m, y)):
         k = m.work.known[i]
-        own, now, kept = m.work.contact[k], pair_of(m, k, y), column(m, k, REMEMBERED)
+        contact, now, kept = m.work.contact[k], pair_of(m, k, y), column(m, k, REMEMBERED)
         starts = m.scene.population.starts_at + flank_of(m, now.coast, now.number)
         for n in range(joined.size):
             if m.tables[starts] <= joined[n] < m.tables[starts + 1]:
-                m.rows[kept + own.joined] = joined[n]
-                own.joined += 1
-        taken += own.joined
+                m.rows[kept + contact.joined] = joined[n]
+                contact.joined += 1
+        taken += contact.joined
         choose_beside(m, k, now.coast, now.number, now.gap, now.place, now.place)
     return taken

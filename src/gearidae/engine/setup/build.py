@@ -33,8 +33,7 @@ from gearidae.engine.model.state import (
 )
 from gearidae.engine.motion.static_solve import settle_nodes
 from gearidae.engine.pairs.tooth_pairs import contact_length, static_error
-from gearidae.engine.setup.build_attraction import add_attraction
-from gearidae.engine.setup.build_contact import Nodes, add_contact, add_nodes, choose_model
+from gearidae.engine.setup.build_contact import Nodes, add_attraction, add_contact, add_nodes, choose_model
 from gearidae.engine.setup.build_friction import add_friction
 from gearidae.engine.setup.build_population import add_population, population_rows
 from gearidae.engine.setup.build_torques import add_torques, reference_force, set_run, set_stop
@@ -344,9 +343,9 @@ def _begun(m: Model, scene: Scene, motion: list[float], skipped: dict[str, int])
 def _skipped(m: Model, scene: Scene) -> dict[str, int]:
     """What the contact of this scene does not need."""
     skipped = {"elastic_deflection": int(m.scene.nodes == 0)}
-    shares = {one.name: one.share for one in scene.materials()}
-    for own, name in zip(m.scene.material, MATERIAL_NAMES, strict=True):
+    shares = {material.name: material.share for material in scene.materials()}
+    for record, name in zip(m.scene.material, MATERIAL_NAMES, strict=True):
         skipped[f"{name}_surface"] = int(shares.get(name, 0.0) == 0.0)
-        without = own.stretch_limit == 0.0 and m.scene.population.flanks == 0
+        without = record.stretch_limit == 0.0 and m.scene.population.flanks == 0
         skipped[f"{name}_hysteresis"] = int(without or shares.get(name, 0.0) == 0.0)
     return skipped

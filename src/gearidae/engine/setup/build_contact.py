@@ -1,9 +1,9 @@
-"""From a scene's surfaces and contact model to force scales, tables and nodes."""
+"""From a scene's surfaces, contact model and Hamaker constants to force scales, tables, nodes and attraction."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from gearidae.asperities import law_of
 from gearidae.asperities.base import AsperityLaw
 from gearidae.asperities.ranges import check_reach
 from gearidae.asperities.tip import asperity_of
+from gearidae.contact.attraction import FLOOR
 from gearidae.contact.kernels.energy import energy_table, joining_energy, loading_pieces, number_table
 from gearidae.contact.kernels.law import (
     GAP_LOW,
@@ -28,8 +29,10 @@ from gearidae.engine.elastic.rows import point_count, row_numbers
 from gearidae.engine.model.state import MATERIALS, Record
 from gearidae.engine.setup.build_friction import Limits
 from gearidae.engine.setup.tables import Tables
-from gearidae.scene import Material, Scene
+from gearidae.errors import SceneError
+from gearidae.scene import GearScene, Material, Scene
 from gearidae.scene.combinations import may_deflect
+from gearidae.scene.limits import MOST_PAIRS, pairs_within_reach
 
 FORCE_FLOOR = 1e-13  # of the reference load: contact forces below it are taken as zero
 CONTACT_FORCE = 1e-3  # of the reference load: what counts as contact in onset and separation events
@@ -96,26 +99,26 @@ def add_contact(
     limits = Limits(scene, kernel)
     longest = 0
     for material, (surface, share, offset, _) in enumerate(parts_of(scene)):
-        own, tip = s.material[material], asperity_of(surface)
-        own.gap_offset = offset / surface.roughness
+        record, tip = s.material[material], asperity_of(surface)
+        record.gap_offset = offset / surface.roughness
         law = law_of(scene.contact.asperity, surface)
         check_reach(law, surface.roughness)
         table = law_table(law, kernel) if share > 0.0 else np.zeros(HEADER)
         energy = energy_table(law, kernel) if share > 0.0 else table
         scale = force_scale(surface.roughness, tip.hertz_factor, surface.asperity_density, width)
         force = share * scale * unit_length / float(s.force_unit)
-        own.force_scale, own.stretch_limit = force, table[H_STRETCH]
-        own.joining_energy = joining_energy(law) if share > 0.0 else 0.0
-        own.table_at, own.energy_at = tables.add(table), tables.add(energy)
-        own.number_at = tables.add(number_table(kernel, law.join))
+        record.force_scale, record.stretch_limit = force, table[H_STRETCH]
+        record.joining_energy = joining_energy(law) if share > 0.0 else 0.0
+        record.table_at, record.energy_at = tables.add(table), tables.add(energy)
+        record.number_at = tables.add(number_table(kernel, law.join))
         longest = max(longest, branch_length(table))
         if share > 0.0:
-            push, stored = loading_pieces(law, kernel, float(own.gap_offset))
+            push, stored = loading_pieces(law, kernel, float(record.gap_offset))
             loading[material], potential[material] = force * push, force * stored
             limits.add(s, tables, material, surface, law)
             for floor, gap in reach.items() if force * widest > 0.0 else ():  # a share may be too small
                 widest_gap = _outermost(law, kernel, floor / (force * widest))
-                reach[floor] = max(gap, widest_gap - float(own.gap_offset))
+                reach[floor] = max(gap, widest_gap - float(record.gap_offset))
     s.cutoff, s.contact_gap = reach[FORCE_FLOOR], reach[CONTACT_FORCE]
     if s.by_place == 0:  # shares that never change are mixed once
         loading, potential = loading.sum(axis=0), potential.sum(axis=0)
@@ -136,17 +139,17 @@ def add_coverage(s: Record, tables: Tables, scene: Scene) -> None:
     if not scene.coating.by_place:
         return
     s.by_place, s.patches = 1, int(scene.coating.pairing == "patches")
-    for own, table in zip(s.coverage, scene.coating.tables, strict=True):
-        add_fractions(own, tables, table, float(s.contact_ratio))
+    for coverage, table in zip(s.coverage, scene.coating.tables, strict=True):
+        add_fractions(coverage, tables, table, float(s.contact_ratio))
 
 
 def add_fractions(
-    own: Record, tables: Tables, table: Sequence[Sequence[float]], contact_ratio: float
+    coverage: Record, tables: Tables, table: Sequence[Sequence[float]], contact_ratio: float
 ) -> None:
-    """Lay out a side's fractions by tooth and place; `own`, its ``COVERAGE``, is changed."""
-    own.teeth, own.places = len(table), len(table[0])
-    own.values_at = tables.add(np.array(table).ravel())
-    own.place_scale = len(table[0]) / contact_ratio
+    """Lay out a side's fractions by tooth and place; `coverage`, its ``COVERAGE``, is changed."""
+    coverage.teeth, coverage.places = len(table), len(table[0])
+    coverage.values_at = tables.add(np.array(table).ravel())
+    coverage.place_scale = len(table[0]) / contact_ratio
 
 
 def _outermost(law: AsperityLaw, kernel: Kernel, least: float) -> float:
@@ -154,3 +157,54 @@ def _outermost(law: AsperityLaw, kernel: Kernel, least: float) -> float:
     gaps, forces = largest_forces(law, kernel)
     felt = np.flatnonzero(forces > least)
     return float(gaps[felt[0]]) if felt.size else GAP_LOW
+
+
+NEGLIGIBLE: Final = 1e-6
+"""Of the reference load: attraction ends where it is as small. It falls with a power of the gap, unlike the force of
+asperities, and the farther it reaches the more pairs of gears have a part in it."""
+NEGLIGIBLE_ALONE: Final = 1e-20
+"""The same for a roller, which is one pair anyway."""
+
+
+def add_attraction(
+    s: Record, tables: Tables, scene: Scene, width: float, unit_length: float, widest: float
+) -> None:
+    """Set the attraction of each material, and move the cut-off to where it is negligible; nothing without it.
+
+    Parameters
+    ----------
+    s : record
+        ``SCENE`` with its contact; changed.
+    width, unit_length : float
+        Face width, and ``sqrt(2 R sigma)`` of a contact of unit length [m].
+    widest : float
+        Largest contact length.
+
+    Raises
+    ------
+    SceneError
+        If it reaches more pairs than can be kept.
+    """
+    if not scene.attracts:
+        return
+    if scene.contact.is_discrete:
+        add_coverage(s, tables, scene)
+    sigma, cutoff = scene.surface.roughness, float(s.cutoff)
+    s.attracts, s.attraction_floor = 1, FLOOR / sigma
+    least = NEGLIGIBLE if isinstance(scene, GearScene) else NEGLIGIBLE_ALONE
+    for material, (surface, share, offset, _) in zip(s.material, parts_of(scene), strict=False):
+        force = surface.hamaker * width * unit_length / (16.0 * sigma**3)
+        material.gap_offset, material.attraction = offset / sigma, share * force / float(s.force_unit)
+        cutoff = max(
+            cutoff, (float(material.attraction) * widest / least) ** 0.4 - float(material.gap_offset)
+        )
+    s.cutoff = cutoff
+    if isinstance(scene, GearScene) and pairs_within_reach(scene, cutoff) > MOST_PAIRS:
+        key = "surface.hamaker" if scene.surface.hamaker > 0.0 else "coating.hamaker"
+        raise SceneError(
+            key,
+            max(scene.surface.hamaker, scene.coating.hamaker),
+            f"attraction is felt {cutoff * sigma:.3g} m away beside so small a load, by more than the {MOST_PAIRS} "
+            "tooth pairs of a flank that can be kept: needs a smaller constant, a larger torque or a smaller "
+            "mesh.tip_relief_radius",
+        )

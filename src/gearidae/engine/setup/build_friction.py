@@ -28,53 +28,59 @@ def add_friction(s: Record, scene: GearScene) -> None:
     s : record
         ``SCENE``; changed.
     """
-    own = s.friction
-    own.joints, own.flanks = int(bool(joints(scene))), int(has_flank_friction(scene))
-    own.rubs = int(own.joints != 0 or own.flanks != 0)
-    own.on = int(own.rubs != 0 or s.dry != 0)
-    own.holding = Holding.DRY_RESISTANCE if s.dry != 0 else 0
-    own.holding |= Holding.FLANK_FRICTION if own.flanks != 0 else 0
-    s.noting = int(scene.run.exposures > 0 or own.rubs != 0)
-    if own.rubs == 0:
+    friction = s.friction
+    friction.joints, friction.flanks = int(bool(joints(scene))), int(has_flank_friction(scene))
+    friction.rubs = int(friction.joints != 0 or friction.flanks != 0)
+    friction.on = int(friction.rubs != 0 or s.dry != 0)
+    friction.holding = Holding.DRY_RESISTANCE if s.dry != 0 else 0
+    friction.holding |= Holding.FLANK_FRICTION if friction.flanks != 0 else 0
+    s.noting = int(scene.run.exposures > 0 or friction.rubs != 0)
+    if friction.rubs == 0:
         return
     _add_joints(s, scene, scene.geometry)
-    own.pinion_lever = float(s.base_pitch) / float(s.pinion_radius)
-    own.gear_lever = float(s.base_pitch) / float(s.gear_radius)
-    own.radii = 1.0 / float(s.sum_curvature)
-    own.pinion_bend = float(s.length_unit) / float(s.pinion_radius)
-    own.gear_bend = float(s.length_unit) / float(s.gear_radius)
-    own.cosine, own.sine = (
+    friction.pinion_lever = float(s.base_pitch) / float(s.pinion_radius)
+    friction.gear_lever = float(s.base_pitch) / float(s.gear_radius)
+    friction.radii = 1.0 / float(s.sum_curvature)
+    friction.pinion_bend = float(s.length_unit) / float(s.pinion_radius)
+    friction.gear_bend = float(s.length_unit) / float(s.gear_radius)
+    friction.cosine, friction.sine = (
         math.cos(2.0 * scene.gears.pressure_angle),
         math.sin(2.0 * scene.gears.pressure_angle),
     )
-    if own.flanks == 0:
+    if friction.flanks == 0:
         return
-    own.shear = int(scene.contact.friction_law == "shear")
-    values, shares = friction_values(scene), {one.name: one.share for one in scene.materials()}
+    friction.shear = int(scene.contact.friction_law == "shear")
+    values, shares = friction_values(scene), {material.name: material.share for material in scene.materials()}
     there = {values[name] for name in MATERIAL_NAMES if shares.get(name, 0.0) > 0.0}
-    own.even = there.pop() if len(there) == 1 and own.shear == 0 else 0.0
+    friction.even = there.pop() if len(there) == 1 and friction.shear == 0 else 0.0
 
 
 def _add_joints(s: Record, scene: GearScene, geometry: Geometry) -> None:
     """Set what friction of the joints depends on."""
-    own = s.friction
+    friction = s.friction
     pinion, gear, force = geometry.base_radius_pinion, geometry.base_radius_gear, float(s.force_unit)
     for joint in joints(scene):
         constant = joint.torque(0.0) / force
         if joint.name == "pin":
-            own.pin, own.pin_arm = joint.arm / pinion, joint.radius / pinion
+            friction.pin, friction.pin_arm = joint.arm / pinion, joint.radius / pinion
         elif joint.name == "gear hub":
-            own.gear_hub, own.gear_arm = joint.arm / gear, joint.radius / gear
-            own.gear_constant = constant / gear
+            friction.gear_hub, friction.gear_arm = joint.arm / gear, joint.radius / gear
+            friction.gear_constant = constant / gear
         else:
-            own.pinion_hub, own.pinion_arm = joint.arm / pinion, joint.radius / pinion
-            own.pinion_constant = constant / pinion
-        own.holding |= int(joint.holding)
-    own.pinion_rubs = int(own.pinion_hub > 0.0 or own.pinion_constant > 0.0 or own.pin > 0.0)
-    own.gear_rubs = int(own.gear_hub > 0.0 or own.gear_constant > 0.0)
-    if own.joints != 0 and has_pin(scene):
+            friction.pinion_hub, friction.pinion_arm = joint.arm / pinion, joint.radius / pinion
+            friction.pinion_constant = constant / pinion
+        friction.holding |= int(joint.holding)
+    friction.pinion_rubs = int(
+        friction.pinion_hub > 0.0 or friction.pinion_constant > 0.0 or friction.pin > 0.0
+    )
+    friction.gear_rubs = int(friction.gear_hub > 0.0 or friction.gear_constant > 0.0)
+    if friction.joints != 0 and has_pin(scene):
         angle = geometry.pressure_angle + scene.drive.orientation
-        own.forced, own.pin_cosine, own.pin_sine = 1, math.cos(angle) / force, math.sin(angle) / force
+        friction.forced, friction.pin_cosine, friction.pin_sine = (
+            1,
+            math.cos(angle) / force,
+            math.sin(angle) / force,
+        )
 
 
 class Limits:
@@ -95,19 +101,22 @@ class Limits:
 
     def add(self, s: Record, tables: Tables, material: int, surface: Surface, law: AsperityLaw) -> None:
         """Add those of a material that the flanks have, whose force law has been laid out."""
-        own, force = s.friction, s.material[material]
+        friction, force = s.friction, s.material[material]
         value = self._values[MATERIAL_NAMES[material]]
         if not self._needed or value == 0.0:
             return
-        own.table_at[material], own.scale[material] = force.table_at, value * float(force.force_scale)
+        friction.table_at[material], friction.scale[material] = (
+            force.table_at,
+            value * float(force.force_scale),
+        )
         if self._shear:
             law = ContactArea(law)
             # the unit of force of the law is that of a compression of sigma; that of the area is pi beta sigma
             area = value * math.pi * surface.asperity_radius * surface.roughness
-            own.scale[material] = area * float(force.force_scale) / hertz_unit(surface)
-            own.table_at[material] = tables.add(law_table(law, self._kernel))
+            friction.scale[material] = area * float(force.force_scale) / hertz_unit(surface)
+            friction.table_at[material] = tables.add(law_table(law, self._kernel))
         loading = loading_pieces(law, self._kernel, float(force.gap_offset))[0]
-        self._loading[material] = own.scale[material] * loading
+        self._loading[material] = friction.scale[material] * loading
 
     def finish(self, s: Record, tables: Tables) -> None:
         """Lay out the loading branch, of all materials together where their shares do not change."""

@@ -64,31 +64,33 @@ def add_population(s: Record, tables: Tables, scene: Scene, steepness: float, ar
     SceneError
         If there are no asperities, or more laws than can be tabulated.
     """
-    own, sigma, flanks = s.population, scene.surface.roughness, flanks_of(scene)
-    counts = np.array([one.arc.size for one in flanks])
+    population, sigma, flanks = s.population, scene.surface.roughness, flanks_of(scene)
+    counts = np.array([flank.arc.size for flank in flanks])
     if counts.sum() == 0:
         listed, density = scene.contact.asperities, scene.surface.asperity_density
         key, value = ("contact.asperities", "(none)") if listed else ("surface.asperity_density", density)
         raise SceneError(key, value, "gives no asperity on any flank: a population needs some")
     length = float(s.base_pitch) if scene.gears is not None else steepness * sigma
-    arcs = np.concatenate([one.arc for one in flanks]) / length
-    heights = np.concatenate([one.height for one in flanks]) / sigma
-    own.flanks, own.steepness, own.arc_scale = len(flanks), steepness, arc_scale
-    own.highest, own.capacity = float(heights.max()), max(int(counts.max()), 1)
-    own.arcs_at, own.heights_at = tables.add(arcs), tables.add(heights)
-    _add_levels(own, tables, heights, counts)
+    arcs = np.concatenate([flank.arc for flank in flanks]) / length
+    heights = np.concatenate([flank.height for flank in flanks]) / sigma
+    population.flanks, population.steepness, population.arc_scale = len(flanks), steepness, arc_scale
+    population.highest, population.capacity = float(heights.max()), max(int(counts.max()), 1)
+    population.arcs_at, population.heights_at = tables.add(arcs), tables.add(heights)
+    _add_levels(population, tables, heights, counts)
     numbers, kinds = _kinds(s, tables, scene, flanks)
     first = tables.add(numbers.ravel())
-    own.kinds_at, *bare = (tables.add((first + KINDS * row).astype(np.float64)) for row in kinds)
+    population.kinds_at, *bare = (tables.add((first + KINDS * row).astype(np.float64)) for row in kinds)
     if bare:
-        own.by_gear_tooth, (own.bare_kinds_at,) = 1, bare
-        own.gear_numbers_at = tables.add(np.concatenate([one.q2 for one in flanks]))
+        population.by_gear_tooth, (population.bare_kinds_at,) = 1, bare
+        population.gear_numbers_at = tables.add(np.concatenate([flank.q2 for flank in flanks]))
         add_fractions(s.coverage[1], tables, scene.coating.gear_table, float(s.contact_ratio))
-    own.join = float(numbers[:, K_JOIN].max())
+    population.join = float(numbers[:, K_JOIN].max())
     digest = flanks_digest(flanks)
-    own.digest = [float(int(digest[8 * k : 8 * k + 8], 16)) for k in range(4)]
-    own.quiet = int(not scene.run.asperity_events)
-    s.cutoff = s.contact_gap = max(own.highest + float(numbers[:, K_DETACH].max()) + BEYOND, LEAST_CUTOFF)
+    population.digest = [float(int(digest[8 * k : 8 * k + 8], 16)) for k in range(4)]
+    population.quiet = int(not scene.run.asperity_events)
+    s.cutoff = s.contact_gap = max(
+        population.highest + float(numbers[:, K_DETACH].max()) + BEYOND, LEAST_CUTOFF
+    )
 
 
 def population_rows(s: Record) -> Floats:
@@ -96,7 +98,7 @@ def population_rows(s: Record) -> Floats:
     return np.zeros(int(s.histories * FIELDS * s.population.capacity))
 
 
-def _add_levels(own: Record, tables: Tables, heights: Floats, counts: Integers) -> None:
+def _add_levels(population: Record, tables: Tables, heights: Floats, counts: Integers) -> None:
     """List the asperities above each level, flank by flank."""
     flank = np.repeat(np.arange(counts.size), counts)
     starts, listed = [np.concatenate([[0], np.cumsum(counts)])], [np.empty(0, np.int64)]
@@ -107,7 +109,10 @@ def _add_levels(own: Record, tables: Tables, heights: Floats, counts: Integers) 
         starts.append(gone + ends)
         listed.append(high)
         gone += high.size
-    own.starts_at, own.listed_at = tables.add(np.concatenate(starts)), tables.add(np.concatenate(listed))
+    population.starts_at, population.listed_at = (
+        tables.add(np.concatenate(starts)),
+        tables.add(np.concatenate(listed)),
+    )
 
 
 def _kinds(
@@ -117,8 +122,8 @@ def _kinds(
 
     A kind is a material with a radius.
     """
-    radii, of_radius = np.unique(np.concatenate([one.radius for one in flanks]), return_inverse=True)
-    material = np.concatenate([materials_met(scene, one) for one in flanks], axis=1)
+    radii, of_radius = np.unique(np.concatenate([flank.radius for flank in flanks]), return_inverse=True)
+    material = np.concatenate([materials_met(scene, flank) for flank in flanks], axis=1)
     both = len(MATERIAL_NAMES) * of_radius.ravel() + material
     pairs, kinds = np.unique(both.ravel(), return_inverse=True)
     return _numbers(
@@ -133,14 +138,14 @@ def _numbers(s: Record, tables: Tables, scene: Scene, radii: Floats, materials: 
     parts: list[tuple[Integers, list[AsperityLaw], Integers]] = []
     reach: dict[AsperityLaw, float] = {}
     friction, shear = friction_values(scene), scene.contact.friction_law == "shear"
-    for one in scene.materials():
-        index = MATERIAL_NAMES.index(one.name)
+    for material in scene.materials():
+        index = MATERIAL_NAMES.index(material.name)
         rows = np.flatnonzero(materials == index)
         if rows.size == 0:
             continue
-        tip, ratio = asperity_of(one.surface), radii[rows] / one.surface.asperity_radius
+        tip, ratio = asperity_of(material.surface), radii[rows] / material.surface.asperity_radius
         units = tip.stretch_limit * np.cbrt(ratio) if tip.stretch_limit > 0.0 else np.full(rows.size, sigma)
-        laws, which = _laws(scene.contact.asperity, one.surface, radii[rows])
+        laws, which = _laws(scene.contact.asperity, material.surface, radii[rows])
         for number, law in enumerate(laws):
             far = highest * sigma / float(units[which == number].min())
             reach[law] = max(reach.get(law, 0.0), far)
@@ -155,9 +160,9 @@ def _numbers(s: Record, tables: Tables, scene: Scene, radii: Floats, materials: 
             load * units / sigma,
         )
         numbers[rows, K_JOIN], numbers[rows, K_DETACH] = join, detach - RELEASED * (detach - join)
-        numbers[rows, K_OFFSET], numbers[rows, K_MATERIAL] = one.gap_offset / sigma, index
+        numbers[rows, K_OFFSET], numbers[rows, K_MATERIAL] = material.gap_offset / sigma, index
         # contact areas are in units of pi times radius times unit of length
-        numbers[rows, K_FRICTION] = friction[one.name] * (
+        numbers[rows, K_FRICTION] = friction[material.name] * (
             math.pi * radii[rows] * units / force if shear else 1.0
         )
         parts.append((rows, laws, which))

@@ -69,24 +69,24 @@ def add_torques(s: Record, tables: Tables, scene: GearScene, begin: float) -> No
     knots = set()
     fastest = 0.0
     for shaft, law, radius in shafts:
-        own, unit = s.torque[shaft], force * radius
+        torque, unit = s.torque[shaft], force * radius
         harmonics = [(h.amplitude, h.frequency, h.phase) for h in law.harmonic if h.frequency is not None]
         orders = [(h.amplitude / unit, h.order, h.phase) for h in law.harmonic if h.order is not None]
-        own.constant = law.torque / unit
-        own.harmonic_count, own.harmonics_at = (
+        torque.constant = law.torque / unit
+        torque.harmonic_count, torque.harmonics_at = (
             len(harmonics),
             tables.add(pack_harmonics(harmonics, tau, unit)),
         )
-        own.law_torque, own.law_speed = unit, float(s.length_unit) / tau / radius
-        own.order_count, own.orders_at = len(orders), tables.add([x for one in orders for x in one])
-        own.angle_unit = float(s.length_unit) / radius
+        torque.law_torque, torque.law_speed = unit, float(s.length_unit) / tau / radius
+        torque.order_count, torque.orders_at = len(orders), tables.add([x for term in orders for x in term])
+        torque.angle_unit = float(s.length_unit) / radius
         highest = max((order for amplitude, order, _ in orders if amplitude != 0.0), default=0.0)
         if law.law is not None:
             numbers = law.law.numbers()
-            own.law_count, own.law_at = len(numbers), tables.add(numbers)
+            torque.law_count, torque.law_at = len(numbers), tables.add(numbers)
             if torque_law(law.law.name).takes_angle:
-                own.takes_angle, highest = 1, max(highest, 1.0)
-        own.takes_angle = int(own.takes_angle or bool(orders))
+                torque.takes_angle, highest = 1, max(highest, 1.0)
+        torque.takes_angle = int(torque.takes_angle or bool(orders))
         s.angle_omega = max(float(s.angle_omega), highest * float(s.base_pitch) / radius)
         fastest = max([fastest, *(frequency for _, frequency, _ in harmonics)])
     speed = float(s.length_unit) / tau / float(s.pinion_radius)
@@ -112,8 +112,8 @@ def add_torques(s: Record, tables: Tables, scene: GearScene, begin: float) -> No
 def _set_looks(s: Record, tables: Floats, scene: GearScene) -> None:
     """Set how often the torques of what is held are looked at, and what is known of their harmonics."""
     fastest = 0.0
-    for own in s.torque:
-        harmonics = tables[own.harmonics_at : own.harmonics_at + 3 * own.harmonic_count]
+    for torque in s.torque:
+        harmonics = tables[torque.harmonics_at : torque.harmonics_at + 3 * torque.harmonic_count]
         amplitudes, frequencies = abs(harmonics[0::3]), abs(harmonics[1::3])
         fastest = max(fastest, float(frequencies.max(initial=0.0)))
         s.rest_bend += float((amplitudes * frequencies**2).sum())
@@ -127,10 +127,10 @@ def _set_looks(s: Record, tables: Floats, scene: GearScene) -> None:
 
 def _add_schedule(s: Record, tables: Tables, which: int, schedule: Knots, unit: float) -> set[float]:
     """Lay out a schedule of values in a unit; return the times over tau at which the solver has to stop for it."""
-    tau, own = float(s.time_unit), s.schedule[which]
+    tau, record = float(s.time_unit), s.schedule[which]
     cubic = schedule.interpolation == "cubic" and len(schedule) >= LEAST_CUBIC
-    own.knot_count, own.cubic = len(schedule), int(cubic)
-    own.knots_at = tables.add(pack_schedule(schedule, tau, unit, cubic=cubic))
+    record.knot_count, record.cubic = len(schedule), int(cubic)
+    record.knots_at = tables.add(pack_schedule(schedule, tau, unit, cubic=cubic))
     stops = (schedule[0], schedule[-1]) if cubic else schedule
     return {t / tau for t, _ in stops}
 

@@ -61,20 +61,20 @@ def check(m: Model, state: Record, y: Floats, rows: Floats, exposures: Floats) -
 
 def _last_segments(m: Model) -> list[int]:
     """Last segment of each schedule: behind all its knots, of a cubic one behind its first and its last."""
-    return [2 if own.cubic else int(own.knot_count) for own in m.scene.schedule]
+    return [2 if schedule.cubic else int(schedule.knot_count) for schedule in m.scene.schedule]
 
 
 def _check_fields(record: Record, fields: Iterable[Quantity], scene: Record) -> None:
     """Check all fields of a record, or of all records of an array at once."""
-    for each in fields:
-        values, high = record[each.name], each.high(scene) if callable(each.high) else each.high
-        if isinstance(each.kind, tuple):
-            _check_fields(values, each.kind, scene)
-        elif each.kind == REAL:
-            _check_size(values, high, each.name)
+    for field in fields:
+        values, high = record[field.name], field.high(scene) if callable(field.high) else field.high
+        if isinstance(field.kind, tuple):
+            _check_fields(values, field.kind, scene)
+        elif field.kind == REAL:
+            _check_size(values, high, field.name)
         else:
-            within = (each.low <= values).all() and (values <= high).all()
-            require(bool(within), each.name, f"from {each.low} to {high}")
+            within = (field.low <= values).all() and (values <= high).all()
+            require(bool(within), field.name, f"from {field.low} to {high}")
 
 
 def _check_size(values: Floats, most: float, what: str) -> None:

@@ -128,7 +128,7 @@ class Problem:
             self._fastest(shaft, felt / float(share) if share > 0.0 else math.inf)
             for shaft, share in ((DRIVE, s.pinion_inverse_mass), (LOAD, s.gear_inverse_mass))
         )
-        steepest = max(fastest_schedule(own, m.tables, 0.0) for own in s.schedule)
+        steepest = max(fastest_schedule(schedule, m.tables, 0.0) for schedule in s.schedule)
         fastest = max(steepest, float(s.torque_omega) / FOLLOWED)
         s.longest_step = 1.0 / fastest if fastest > 0.0 else 0.0
         s.free_step = self._longest_free_step()
@@ -151,8 +151,8 @@ class Problem:
 
     def _fastest(self, shaft: int, felt: float) -> float:
         scene, tables = self.model.scene, self.model.tables
-        own = scene.torque[shaft]
-        harmonics = tables[own.harmonics_at : own.harmonics_at + 3 * own.harmonic_count]
+        torque = scene.torque[shaft]
+        harmonics = tables[torque.harmonics_at : torque.harmonics_at + 3 * torque.harmonic_count]
         fastest = max(
             fastest_harmonic(harmonics, felt), fastest_schedule(scene.schedule[shaft], tables, felt)
         )
@@ -182,8 +182,8 @@ class Problem:
             balance = EnergyBalance(energies, time=time * self.time_unit)
         if m.scene.follow.extremes:
             extremes = extremes_in_si(m, self.located.place, time, state)
-        for record, one in zip((m.state, m.work), before, strict=True):
-            assign(record, one)
+        for record, copy in zip((m.state, m.work), before, strict=True):
+            assign(record, copy)
         exposures[:] = exposed
         return balance, extremes
 

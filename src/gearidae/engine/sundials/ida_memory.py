@@ -70,9 +70,9 @@ def open_solver(
         Of Newton's iteration in one step.
     """
     m, (y, yp, dky) = model_at(place), vectors
-    m.work.adams.own = 1 if functions.newton.size > 0 else 0
+    m.work.adams.native_newton = 1 if functions.newton.size > 0 else 0
     n = y.size
-    if m.work.adams.own != 0:  # nodes are eliminated
+    if m.work.adams.native_newton != 0:  # nodes are eliminated
         n -= m.scene.nodes * m.scene.histories
     flag = sun.SUNContext_Create(0, handles[CONTEXT:].ctypes.data)
     if flag != 0:

@@ -80,10 +80,10 @@ def common_period(frequencies: Iterable[float]) -> float:
     frequencies : iterable of float
         [Hz]
     """
-    moving, periods = [one for one in frequencies if one > 0.0], 1
-    for one in moving:
-        ratio = Fraction(one / moving[0]).limit_denominator(WHOLE_HIGH)
-        if abs(one / moving[0] - ratio) > WHOLE_RTOL * ratio:
+    moving, periods = [frequency for frequency in frequencies if frequency > 0.0], 1
+    for frequency in moving:
+        ratio = Fraction(frequency / moving[0]).limit_denominator(WHOLE_HIGH)
+        if abs(frequency / moving[0] - ratio) > WHOLE_RTOL * ratio:
             return 0.0
         periods = math.lcm(periods, ratio.denominator)
     return periods / moving[0] if moving else 0.0

@@ -145,15 +145,15 @@ _call: Any = intrinsic(_typed)
 @compiled
 def _number(m: Model, shaft: int, which: int, t: float, angle: float, speed: float) -> float:
     """Number of a shaft's law in SI units, at a scaled time and speed and an angle [rad]."""
-    own = m.scene.torque[shaft]
+    torque = m.scene.torque[shaft]
     return _call(
         m.work.torque_law[shaft],
         t * m.scene.time_unit,
         angle,
-        speed * own.law_speed,
+        speed * torque.law_speed,
         m.tables,
-        own.law_at,
-        own.law_count,
+        torque.law_at,
+        torque.law_count,
         which,
     )
 

@@ -46,7 +46,7 @@ def pack_schedule(
     return np.concatenate([knots.ravel(), coefficients[2::-1].T.ravel()])
 
 
-def segment_ends(own: Record, tables: Floats) -> Floats:
+def segment_ends(schedule: Record, tables: Floats) -> Floats:
     """Times at which a schedule enters its segments: all knots, or the first and the last of a cubic one.
 
     Parameters
@@ -56,11 +56,11 @@ def segment_ends(own: Record, tables: Floats) -> Floats:
     tables : ndarray
         Of the model.
     """
-    times = tables[own.knots_at : own.knots_at + 2 * own.knot_count : 2]
-    return times[[0, -1]] if own.cubic else times
+    times = tables[schedule.knots_at : schedule.knots_at + 2 * schedule.knot_count : 2]
+    return times[[0, -1]] if schedule.cubic else times
 
 
-def fastest_schedule(own: Record, tables: Floats, felt: float) -> float:
+def fastest_schedule(schedule: Record, tables: Floats, felt: float) -> float:
     """Angular frequency of the harmonic that is as steep as a cubic schedule, if it is felt; 0 else.
 
     Between two knots at which its slope is zero a cubic is steeper than their chord by half.
@@ -74,9 +74,9 @@ def fastest_schedule(own: Record, tables: Floats, felt: float) -> float:
     felt : float
         Impulse, see `gearidae.engine.torques.harmonic.fastest_harmonic`.
     """
-    if not own.cubic:
+    if not schedule.cubic:
         return 0.0
-    count, start = int(own.knot_count), int(own.knots_at)
+    count, start = int(schedule.knot_count), int(schedule.knots_at)
     values = tables[start + 1 : start + 2 * count : 2]
     steepest = 1.5 * np.abs(np.diff(values) / np.diff(tables[start : start + 2 * count : 2])).max()
     amplitude = 0.5 * float(values.max() - values.min())
@@ -87,11 +87,11 @@ def fastest_schedule(own: Record, tables: Floats, felt: float) -> float:
 @compiled
 def _piece(m: Model, which: int, t: float) -> int:
     """Index of the knot before a time, at most the last but one."""
-    own = m.scene.schedule[which]
-    j, times = m.work.piece[which], own.knots_at
+    schedule = m.scene.schedule[which]
+    j, times = m.work.piece[which], schedule.knots_at
     while j > 0 and t < m.tables[times + 2 * j]:
         j -= 1
-    while j < own.knot_count - 2 and t >= m.tables[times + 2 * j + 2]:
+    while j < schedule.knot_count - 2 and t >= m.tables[times + 2 * j + 2]:
         j += 1
     m.work.piece[which] = j
     return j
@@ -119,15 +119,15 @@ def _cubic_rate(m: Model, which: int, t: float) -> float:
 @compiled(inline=True)
 def schedule_value(m: Model, which: int, t: float, value: float) -> float:
     """Add the schedule at a time to a value."""
-    own = m.scene.schedule[which]
-    knots = own.knot_count
+    schedule = m.scene.schedule[which]
+    knots = schedule.knot_count
     if knots > 0:
-        k, j = own.knots_at, m.state.segment[which]
+        k, j = schedule.knots_at, m.state.segment[which]
         if j == 0:
             value += m.tables[k + 1]
-        elif j == (2 if own.cubic != 0 else knots):
+        elif j == (2 if schedule.cubic != 0 else knots):
             value += m.tables[k + 2 * knots - 1]
-        elif own.cubic != 0:
+        elif schedule.cubic != 0:
             value += _cubic_value(m, which, t)
         else:
             k += 2 * j
@@ -139,11 +139,11 @@ def schedule_value(m: Model, which: int, t: float, value: float) -> float:
 @compiled
 def schedule_rate(m: Model, which: int, t: float) -> float:
     """Rate of change of the schedule."""
-    own = m.scene.schedule[which]
-    k, j = own.knots_at, m.state.segment[which]
-    if not 0 < j < (2 if own.cubic != 0 else own.knot_count):
+    schedule = m.scene.schedule[which]
+    k, j = schedule.knots_at, m.state.segment[which]
+    if not 0 < j < (2 if schedule.cubic != 0 else schedule.knot_count):
         return 0.0
-    if own.cubic != 0:
+    if schedule.cubic != 0:
         return _cubic_rate(m, which, t)
     k += 2 * j
     return (m.tables[k + 1] - m.tables[k - 1]) / (m.tables[k] - m.tables[k - 2])
@@ -152,16 +152,17 @@ def schedule_rate(m: Model, which: int, t: float) -> float:
 @compiled
 def enter_segment(m: Model, which: int, t: float) -> None:
     """Enter the segment that begins at a knot, if this schedule has one at this time."""
-    own = m.scene.schedule[which]
-    if own.cubic != 0:
-        last = own.knots_at + 2 * own.knot_count - 2
-        if m.state.segment[which] == 0 and m.tables[own.knots_at] <= t:
+    schedule = m.scene.schedule[which]
+    if schedule.cubic != 0:
+        last = schedule.knots_at + 2 * schedule.knot_count - 2
+        if m.state.segment[which] == 0 and m.tables[schedule.knots_at] <= t:
             m.state.segment[which] = 1
         if m.state.segment[which] == 1 and m.tables[last] <= t:
             m.state.segment[which] = 2
         return
     while (
-        m.state.segment[which] < own.knot_count and m.tables[own.knots_at + 2 * m.state.segment[which]] <= t
+        m.state.segment[which] < schedule.knot_count
+        and m.tables[schedule.knots_at + 2 * m.state.segment[which]] <= t
     ):
         m.state.segment[which] += 1
 

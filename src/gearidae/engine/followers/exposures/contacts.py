@@ -5,18 +5,25 @@ of each material, with :math:`\Psi` those per length. The energy balance follows
 times the rise of :math:`\Psi` (the lag, `gearidae.engine.followers.joining`): of rigid bodies with hysteresis and
 uniform coverage, contacts are added up at turning points, and where a contact leaves a place. Of others, the lag of
 each material is not known: there they are added up as often as sliding work is, with the mean length.
+
+Asperities of a population each count at their place on the flank, and lose when they join and when they detach, as in
+the energy balance. The largest pressure of a pair is followed from one look at its force to the next.
 """
 
 from __future__ import annotations
 
-from gearidae.compiled import compiled
-from gearidae.contact.history import joined_height
+from gearidae.compiled import compiled, compiled_once
+from gearidae.contact.history import extreme_gap, joined_height
 from gearidae.contact.kernels.law import loading_value
+from gearidae.engine.compiling import EXPOSURES
 from gearidae.engine.elastic.energy import nodes_number
-from gearidae.engine.followers.exposures.bins import ROWS, bin_at, share_at_edge
+from gearidae.engine.followers.exposures.bins import ROWS, bin_at, row_of, share_at_edge
 from gearidae.engine.formulas.interpolation import cubic
 from gearidae.engine.model.state import MATERIALS, Floats, Model
-from gearidae.engine.pairs.tooth_pairs import contact_length
+from gearidae.engine.pairs.tooth_pairs import contact_length, list_known
+from gearidae.engine.population.forces import candidate_energy
+from gearidae.engine.population.layout import ARC, HEIGHT, K_MATERIAL, KIND, REMEMBERED, SIGN, column
+from gearidae.engine.population.spots import pair_of, place_of_arc, spot_at
 
 
 @compiled
@@ -24,32 +31,32 @@ def adds_often(m: Model) -> bool:
     """Whether contacts are added up wherever sliding work is, as the lag of each material is not known."""
     often = m.scene.nodes > 0 or m.scene.by_place != 0
     for material in range(MATERIALS):
-        own = m.scene.material[material]
-        often |= own.force_scale > 0.0 and own.stretch_limit == 0.0
+        surface = m.scene.material[material]
+        often |= surface.force_scale > 0.0 and surface.stretch_limit == 0.0
     return often
 
 
 @compiled
 def begin_contacts(m: Model, y: Floats, k: int, inside: float, gap: float) -> None:
     """Begin with what a pair has in contact at a start."""
-    own = m.work.exposing.pair[k]
+    exposure = m.work.exposing.pair[k]
     missing = _note_numbers(m, y, k, gap)
     for material in range(MATERIALS):
-        own.front[material] = own.number[material]
-        own.added[material] = (contact_length(m, inside) - missing) * (
-            own.number[material] - own.base[material]
+        exposure.front[material] = exposure.number[material]
+        exposure.added[material] = (contact_length(m, inside) - missing) * (
+            exposure.number[material] - exposure.base[material]
         )
 
 
 @compiled
 def turn_to_closing(m: Model, y: Floats, k: int, gap: float) -> None:
     """Begin again where a contact turns round from opening to closing, before its history takes that."""
-    own = m.work.exposing.pair[k]
-    own.turned = 1
+    exposure = m.work.exposing.pair[k]
+    exposure.turned = 1
     for material in range(MATERIALS):
         law = m.scene.material[material]
         if law.force_scale > 0.0 and (law.stretch_limit == 0.0 or m.scene.nodes > 0):
-            own.front[material] = _front(m, y, k, gap, material)
+            exposure.front[material] = _front(m, y, k, gap, material)
 
 
 @compiled(inline=True)
@@ -64,37 +71,37 @@ def joins_here(m: Model, k: int, inside: float, gap: float) -> bool:
 @compiled(inline=True)
 def joins(m: Model, k: int, gap: float) -> bool:
     """Whether asperities of a closing contact join: below what has joined before."""
-    h, found = m.state.history[k], m.scene.nodes > 0
+    h, joining = m.state.history[k], m.scene.nodes > 0
     for material in range(MATERIALS):
-        own = m.scene.material[material]
-        found |= own.force_scale > 0.0 and (gap < h.joined[material] or own.stretch_limit == 0.0)
-    return found
+        surface = m.scene.material[material]
+        joining |= surface.force_scale > 0.0 and (gap < h.joined[material] or surface.stretch_limit == 0.0)
+    return joining
 
 
 @compiled
 def join(m: Model, t: float, y: Floats, k: int, inside: float, gap: tuple[float, float]) -> None:
     """Add the contacts that a pair has made since that was last done, up to a gap, given with its rate."""
-    own, often = m.work.exposing.pair[k], m.work.exposing.often != 0
+    exposure, often = m.work.exposing.pair[k], m.work.exposing.often != 0
     missing = _note_numbers(m, y, k, gap[0])
     here, length = bin_at(m, inside), contact_length(m, inside)
-    mean = 0.5 * (length + contact_length(m, own.position)) if often else length - missing
+    mean = 0.5 * (length + contact_length(m, exposure.position)) if often else length - missing
     for material in range(MATERIALS):
-        if own.turned != 0 and m.scene.material[material].stretch_limit > 0.0 and m.scene.nodes == 0:
-            own.front[material], own.added[material] = own.base[material], 0.0
-        rise = own.number[material] - own.front[material]
+        if exposure.turned != 0 and m.scene.material[material].stretch_limit > 0.0 and m.scene.nodes == 0:
+            exposure.front[material], exposure.added[material] = exposure.base[material], 0.0
+        rise = exposure.number[material] - exposure.front[material]
         if rise <= 0.0:
             continue
         more = mean * rise
         if not often:
-            total = mean * (own.number[material] - own.base[material])
-            more = max(total - own.added[material], 0.0)
-            own.added[material] = total
-        if here == own.bin:
+            total = mean * (exposure.number[material] - exposure.base[material])
+            more = max(total - exposure.added[material], 0.0)
+            exposure.added[material] = total
+        if here == exposure.bin:
             _add(m, k, material, here, more)
         else:
             _divide(m, t, y, k, material, (inside, gap[0], gap[1]), more)
-        own.front[material] = own.number[material]
-    own.turned = 0
+        exposure.front[material] = exposure.number[material]
+    exposure.turned = 0
 
 
 @compiled(inline=True)
@@ -106,27 +113,29 @@ def _note_numbers(m: Model, y: Floats, k: int, gap: float) -> float:
     float
         By how much shorter the contact was on average when its contacts were made, from the lag of rigid bodies.
     """
-    own, h, lost = m.work.exposing.pair[k], m.state.history[k], 0.0
+    exposure, h, lost = m.work.exposing.pair[k], m.state.history[k], 0.0
     for material in range(MATERIALS):
         law = m.scene.material[material]
-        own.number[material] = own.base[material] = 0.0
+        exposure.number[material] = exposure.base[material] = 0.0
         if law.force_scale <= 0.0:
             continue
-        own.number[material] = _front(m, y, k, gap, material)
+        exposure.number[material] = _front(m, y, k, gap, material)
         if law.stretch_limit > 0.0 and m.scene.nodes == 0:
-            own.base[material] = -h.adhered_energy[material] / law.joining_energy
-            lost += law.joining_energy * law.force_scale * (own.number[material] - own.base[material])
+            exposure.base[material] = -h.adhered_energy[material] / law.joining_energy
+            lost += (
+                law.joining_energy * law.force_scale * (exposure.number[material] - exposure.base[material])
+            )
     return h.lag / lost if lost > 0.0 else 0.0
 
 
 @compiled(inline=True)
 def _front(m: Model, y: Floats, k: int, gap: float, material: int) -> float:
     """Asperities of a material in contact per length, over their density."""
-    own = m.scene.material[material]
+    surface = m.scene.material[material]
     if m.scene.nodes > 0:
         return nodes_number(m, k, y, gap, material)
-    height = joined_height(m.state.history[k].joined[material], gap, own.stretch_limit)
-    return loading_value(m.tables, own.number_at, height + own.gap_offset)[0]
+    height = joined_height(m.state.history[k].joined[material], gap, surface.stretch_limit)
+    return loading_value(m.tables, surface.number_at, height + surface.gap_offset)[0]
 
 
 @compiled
@@ -144,14 +153,14 @@ def _divide(
     more : float
         What it has made.
     """
-    own, (inside, gap, rate) = m.work.exposing.pair[k], there
-    last, first = own.number[material], own.front[material]
-    here, step, before = own.bin, 1 if inside > own.position else -1, first
+    exposure, (inside, gap, rate) = m.work.exposing.pair[k], there
+    last, first = exposure.number[material], exposure.front[material]
+    here, step, before = exposure.bin, 1 if inside > exposure.position else -1, first
     while here != bin_at(m, inside):
-        share = share_at_edge(m, here, own.position, inside)
+        share = share_at_edge(m, here, exposure.position, inside)
         front = first + share * (last - first)
         if m.scene.nodes == 0:  # of elastic contacts the deflection on the way is not known
-            passing = cubic(share, t - own.time, own.gap, own.gap_rate, gap, rate)
+            passing = cubic(share, t - exposure.time, exposure.gap, exposure.gap_rate, gap, rate)
             front = min(max(_front(m, y, k, passing, material), before), last)
         _add(m, k, material, here, more * (front - before) / (last - first))
         here, before = here + step, front
@@ -167,3 +176,89 @@ def _add(m: Model, k: int, material: int, here: int, more: float) -> None:
         m.rows[row + (ROWS.adhesion + material) * m.scene.bins + here] += (
             law.joining_energy * law.force_scale * more
         )
+
+
+@compiled(inline=True)
+def see_pressure(m: Model, t: float, k: int, inside: float, force: tuple[float, float]) -> None:
+    """Note the pressure of a pair, and that where it has passed from one place to the next since the last look.
+
+    Parameters
+    ----------
+    t : float
+        Time over tau.
+    k : int
+        Index of the pair's history.
+    inside : float
+        Place on the path of contact, in pitches.
+    force : tuple of float
+        Force there, with its rate.
+    """
+    exposure, here = m.work.exposing.pair[k], bin_at(m, inside)
+    if force[0] > 0.0:
+        note_pressure(m, k, here, inside, force[0])
+    if m.scene.population.flanks != 0 and t > exposure.seen_time and exposure.force_rate > 0.0 > force[1]:
+        # its turning points are no events
+        peak = extreme_gap(t - exposure.seen_time, exposure.force, exposure.force_rate, force[0], force[1])
+        if peak > 0.0 and here == exposure.seen_bin:
+            note_pressure(m, k, here, inside, peak)
+    if here != exposure.seen_bin:
+        if exposure.force > 0.0 or force[0] > 0.0:
+            _note_crossings(m, t, k, inside, force)
+        exposure.lowest = m.scene.cutoff  # another place
+    exposure.seen_time, exposure.seen_position, exposure.seen_bin = t, inside, here
+    exposure.force, exposure.force_rate = force
+
+
+@compiled(inline=True)
+def note_pressure(m: Model, k: int, here: int, inside: float, force: float) -> None:
+    """Note the pressure of a contact in a place, where it is the largest so far."""
+    row = m.work.exposing.pair[k].row + ROWS.pressure * m.scene.bins + here
+    radius = m.scene.start_radius + inside
+    # of squares: a root only where there is something to note
+    if force * force > m.rows[row] * m.rows[row] * (radius - radius * radius * m.scene.sum_curvature):
+        m.rows[row] = force / contact_length(m, inside)
+
+
+@compiled
+def _note_crossings(m: Model, t: float, k: int, inside: float, force: tuple[float, float]) -> None:
+    """Note the pressure where a pair has passed from one place to the next, on the cubic of its force.
+
+    Parameters
+    ----------
+    m, t, k, inside, force
+        As for `see_pressure`.
+    """
+    exposure, here = m.work.exposing.pair[k], bin_at(m, inside)
+    for place in range(min(exposure.seen_bin, here) + 1, max(exposure.seen_bin, here) + 1):
+        edge = place / m.scene.bins_per_pitch
+        share = (edge - exposure.seen_position) / (inside - exposure.seen_position)
+        pressing = cubic(
+            share, t - exposure.seen_time, exposure.force, exposure.force_rate, force[0], force[1]
+        )
+        if pressing > 0.0:
+            note_pressure(m, k, place - 1, edge, pressing)
+            note_pressure(m, k, place, edge, pressing)
+
+
+@compiled_once(EXPOSURES)
+def add_flips(m: Model, y: Floats) -> None:
+    """Add what has joined or detached at a root, after `flip_asperities` has found it and before it is recorded."""
+    for i in range(list_known(m, y)):
+        k = m.work.known[i]
+        contact, now = m.work.contact[k], pair_of(m, k, y)
+        row = row_of(m, now.coast, now.number)
+        at = spot_at(m, now.place, now.moves)
+        bend = 0.5 * m.scene.population.steepness / at.radius
+        for n in range(contact.flips):
+            j = int(m.rows[column(m, k, REMEMBERED) + n])
+            arc, kind = m.rows[column(m, k, ARC) + j], int(m.rows[column(m, k, KIND) + j])
+            x = arc - at.arc
+            energy = candidate_energy(m, kind, m.rows[column(m, k, HEIGHT) + j] - now.gap - bend * x * x)
+            here = row + bin_at(m, place_of_arc(m, arc))
+            material = int(m.tables[kind + K_MATERIAL])
+            lost = here + (ROWS.adhesion + material) * m.scene.bins
+            if m.rows[column(m, k, SIGN) + j] > 0.0:
+                m.rows[here + (ROWS.contacts + material) * m.scene.bins] += 1.0
+                m.rows[lost] -= energy
+            else:
+                m.rows[lost] += energy

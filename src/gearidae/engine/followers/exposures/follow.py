@@ -17,7 +17,7 @@ An elastic contact is looked at as often as the energy balance closes an interva
 to the next in such an interval, what it has joined is divided by its gap there, on the cubic of the gap; of elastic
 contacts, and of sliding work, in proportion to the way. Contacts on the tip relief count at the end of the path.
 
-Asperities of a population are counted one by one, each at its own place (the module `asperities` of this room); sliding
+Asperities of a population are counted one by one, each at its own place (`contacts.add_flips`); sliding
 work and pressure are those of the whole pair, where it touches. The work of friction is a fifth sum, of flanks that
 have friction (the module `rubbing` of this room).
 """
@@ -36,9 +36,10 @@ from gearidae.engine.followers.exposures.contacts import (
     join,
     joins,
     joins_here,
+    note_pressure,
+    see_pressure,
     turn_to_closing,
 )
-from gearidae.engine.followers.exposures.pressure import note_pressure, see_pressure
 from gearidae.engine.followers.exposures.sliding import (
     add_sliding,
     begin_intervals,
@@ -138,25 +139,30 @@ def step(m: Model, t: float, y: Floats, yp: Floats, root: bool) -> None:
 
 
 @compiled(inline=True)
-def event(m: Model, t: float, y: Floats, yp: Floats, found: PairEvent) -> None:
+def event(m: Model, t: float, y: Floats, yp: Floats, event: PairEvent) -> None:
     """Add what a contact has been exposed to up to an event, before its history takes that.
 
     Most turning points add nothing. That is found out in the caller's code.
     """
     if m.work.exposing.begun == 0:
         return
-    coast, pair, k, gap = found.coast, found.pair, found.k, found.gap
-    if found.touches:
+    coast, pair, k, gap = event.coast, event.pair, event.k, event.gap
+    if event.touches:
         _touch(m, t, y, yp, coast, pair, k)
-    if not found.turns:
+    if not event.turns:
         return
-    own = m.work.exposing.pair[k]
+    exposure = m.work.exposing.pair[k]
     if m.state.history[k].direction < 0.0:
         inside = path_position(m, coast, pair, y[PHASE])
-        if gap < own.lowest or bin_at(m, inside) != own.seen_bin or m.scene.nodes > 0 or joins(m, k, gap):
+        if (
+            gap < exposure.lowest
+            or bin_at(m, inside) != exposure.seen_bin
+            or m.scene.nodes > 0
+            or joins(m, k, gap)
+        ):
             _close(m, t, y, yp, coast, pair, k, gap)
     elif m.work.exposing.often == 0:
-        own.turned = 1
+        exposure.turned = 1
     else:
         _open(m, y, coast, pair, k, gap)
 
@@ -177,13 +183,13 @@ def _open(m: Model, y: Floats, coast: int, pair: int, k: int, gap: float) -> Non
 @compiled_once(EXPOSURES)
 def _close(m: Model, t: float, y: Floats, yp: Floats, coast: int, pair: int, k: int, gap: float) -> None:
     """Add what a contact that ceases to close has been exposed to: the pressure is largest where the gap is least."""
-    own, inside = m.work.exposing.pair[k], path_position(m, coast, pair, y[PHASE])
+    exposure, inside = m.work.exposing.pair[k], path_position(m, coast, pair, y[PHASE])
     _begin_new(m, k, pair, inside)
     if joins(m, k, gap):
         join(m, t, y, k, inside, (gap, 0.0))
     here, elastic = bin_at(m, inside), m.scene.nodes > 0
-    if elastic or gap < own.lowest or here != own.seen_bin:
-        own.lowest = min(own.lowest, gap)
+    if elastic or gap < exposure.lowest or here != exposure.seen_bin:
+        exposure.lowest = min(exposure.lowest, gap)
         force, _ = _force(m, t, y, (coast, pair, k), (gap, 0.0, inside))
         if elastic:  # the slope of the force has a jump here
             add_sliding(m, t, k, sliding_speeds(m, y, yp[V], yp[W]), inside, (gap, 0.0), (force, 0.0))
@@ -208,24 +214,24 @@ def _touch(m: Model, t: float, y: Floats, yp: Floats, coast: int, pair: int, k: 
 @compiled(inline=True)
 def _begin_new(m: Model, k: int, pair: int, inside: float) -> None:
     """Begin with a pair that has come near since the exposures of all pairs were last added up."""
-    own, before = m.work.exposing.pair[k], m.work.exposing.time
-    if own.known == 0 or own.pair != pair or own.time < before:
+    exposure, before = m.work.exposing.pair[k], m.work.exposing.time
+    if exposure.known == 0 or exposure.pair != pair or exposure.time < before:
         _begin_pair(m, before, k, pair, inside)
 
 
 @compiled
 def _begin_pair(m: Model, t: float, k: int, pair: int, inside: float) -> None:
     """Begin with a pair in which nothing is in contact."""
-    own = m.work.exposing.pair[k]
-    own.known, own.pair, own.time = 1, pair, t
-    own.position, own.bin = inside, bin_at(m, inside)
-    own.seen_time, own.seen_position, own.seen_bin = t, own.position, own.bin
-    own.turned, own.pulls, own.lowest = 0, 0, m.scene.cutoff
-    own.power = own.power_rate = own.force = own.force_rate = own.gap_rate = 0.0
-    own.gap, own.side = m.scene.cutoff, 1
+    exposure = m.work.exposing.pair[k]
+    exposure.known, exposure.pair, exposure.time = 1, pair, t
+    exposure.position, exposure.bin = inside, bin_at(m, inside)
+    exposure.seen_time, exposure.seen_position, exposure.seen_bin = t, exposure.position, exposure.bin
+    exposure.turned, exposure.pulls, exposure.lowest = 0, 0, m.scene.cutoff
+    exposure.power = exposure.power_rate = exposure.force = exposure.force_rate = exposure.gap_rate = 0.0
+    exposure.gap, exposure.side = m.scene.cutoff, 1
     for material in range(MATERIALS):
-        own.front[material] = own.added[material] = 0.0
-    own.row = row_of(m, flank_of_history(m, k), pair)
+        exposure.front[material] = exposure.added[material] = 0.0
+    exposure.row = row_of(m, flank_of_history(m, k), pair)
 
 
 @compiled

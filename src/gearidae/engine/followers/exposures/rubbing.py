@@ -31,31 +31,31 @@ def keeps_rubbing(m: Model) -> bool:
 def begin_powers(m: Model) -> None:
     """Begin to note the powers of friction of all pairs at a time, if they are kept."""
     for k in range(m.scene.histories if keeps_rubbing(m) else 0):
-        own = m.work.exposing.pair[k]
-        own.friction = own.friction_rate = 0.0
+        exposure = m.work.exposing.pair[k]
+        exposure.friction = exposure.friction_rate = 0.0
 
 
 @compiled(inline=True)
 def note_power(m: Model, k: int, power: float, rate: float) -> None:
     """Note the power of friction of the pair with the k-th history, and its rate."""
-    own = m.work.exposing.pair[k]
-    own.friction, own.friction_rate = power, rate
+    exposure = m.work.exposing.pair[k]
+    exposure.friction, exposure.friction_rate = power, rate
 
 
 @compiled(inline=True)
 def add_rubbing(m: Model, weight: float, rate_weight: float) -> None:
     """Add to the work of a step the powers of friction that have been noted, and their rates, with weights."""
     for k in range(m.scene.histories if keeps_rubbing(m) else 0):
-        own = m.work.exposing.pair[k]
-        own.rubbed += weight * own.friction + rate_weight * own.friction_rate
+        exposure = m.work.exposing.pair[k]
+        exposure.rubbed += weight * exposure.friction + rate_weight * exposure.friction_rate
 
 
 @compiled_once(FRICTION)
 def divide_rubbing(m: Model, y: Floats) -> None:
     """Add the work of a step to the places where pairs rub at a state."""
     for k in range(m.scene.histories):
-        own, pair = m.work.exposing.pair[k], int(m.state.history[k].pair)
-        work, own.rubbed = own.rubbed, 0.0
+        exposure, pair = m.work.exposing.pair[k], int(m.state.history[k].pair)
+        work, exposure.rubbed = exposure.rubbed, 0.0
         if work == 0.0:
             continue
         coast = flank_of_history(m, k)

@@ -75,7 +75,7 @@ def add_sliding(
     gap, force : tuple of float
         Gap and force, each with its rate.
     """
-    own, away = m.work.exposing.pair[k], inside - m.scene.pitch_point
+    exposure, away = m.work.exposing.pair[k], inside - m.scene.pitch_point
     speed, speed_rate = sliding[0] * away, sliding[1] * away
     if 0.0 < inside < m.scene.contact_ratio:
         speed_rate += sliding[0] * (sliding[2] if k < m.scene.slots else -sliding[2])
@@ -83,18 +83,18 @@ def add_sliding(
     if speed < 0.0:
         side, speed, speed_rate = -1, -speed, -speed_rate
     power, power_rate = force[0] * speed, force[1] * speed + force[0] * speed_rate
-    here, h = bin_at(m, inside), t - own.time
-    pushes, turns = max(power, own.power) > 0.0, side != own.side
-    if pushes or (not turns and _rises(h, own.power, own.power_rate, power, power_rate)):
+    here, h = bin_at(m, inside), t - exposure.time
+    pushes, turns = max(power, exposure.power) > 0.0, side != exposure.side
+    if pushes or (not turns and _rises(h, exposure.power, exposure.power_rate, power, power_rate)):
         if pushes and not turns:
             work = _add_pushing(m, k, h, inside, (power, power_rate))
         else:
             work = _add_parts(m, k, h, inside, side, (power, power_rate))
         m.work.exposing.work += work
-        m.work.exposing.error += error_estimate(h, own.power, power, own.power_rate, power_rate)
-    own.time, own.position, own.bin = t, inside, here
-    own.power, own.power_rate, own.side = power, power_rate, side
-    own.gap, own.gap_rate = gap
+        m.work.exposing.error += error_estimate(h, exposure.power, power, exposure.power_rate, power_rate)
+    exposure.time, exposure.position, exposure.bin = t, inside, here
+    exposure.power, exposure.power_rate, exposure.side = power, power_rate, side
+    exposure.gap, exposure.gap_rate = gap
 
 
 @compiled(inline=True)
@@ -119,18 +119,18 @@ def _add_pushing(m: Model, k: int, h: float, inside: float, there: tuple[float, 
     there : tuple of float
         Power at its end, and its rate.
     """
-    own = m.work.exposing.pair[k]
-    work, begins, ceases = integral(h, own.power, there[0], own.power_rate, there[1]), 0.0, 1.0
-    if min(own.power, there[0]) < 0.0:
-        zero = _zero(h, own.power, own.power_rate, there[0], there[1])
-        until = _work_until(zero, h, own.power, own.power_rate, there[0], there[1])
-        if own.power > 0.0:
+    exposure = m.work.exposing.pair[k]
+    work, begins, ceases = integral(h, exposure.power, there[0], exposure.power_rate, there[1]), 0.0, 1.0
+    if min(exposure.power, there[0]) < 0.0:
+        zero = _zero(h, exposure.power, exposure.power_rate, there[0], there[1])
+        until = _work_until(zero, h, exposure.power, exposure.power_rate, there[0], there[1])
+        if exposure.power > 0.0:
             work, ceases = until, zero
         else:
             work, begins = work - until, zero
     work = max(work, 0.0)
-    if bin_at(m, inside) == own.bin:
-        m.rows[own.row + ROWS.sliding * m.scene.bins + own.bin] += work
+    if bin_at(m, inside) == exposure.bin:
+        m.rows[exposure.row + ROWS.sliding * m.scene.bins + exposure.bin] += work
     else:
         _divide(m, k, h, inside, there, (work, begins, ceases))
     return work
@@ -154,13 +154,13 @@ def _divide(
     pushing : tuple of float
         Work of the whole interval, and the shares of the interval at which the contact begins and ceases to push.
     """
-    own, end, (work, begins, ceases) = m.work.exposing.pair[k], bin_at(m, inside), pushing
-    row, here, done = own.row + ROWS.sliding * m.scene.bins, own.bin, 0.0
-    before = _work_until(begins, h, own.power, own.power_rate, there[0], there[1])
-    step = 1 if inside > own.position else -1
+    exposure, end, (work, begins, ceases) = m.work.exposing.pair[k], bin_at(m, inside), pushing
+    row, here, done = exposure.row + ROWS.sliding * m.scene.bins, exposure.bin, 0.0
+    before = _work_until(begins, h, exposure.power, exposure.power_rate, there[0], there[1])
+    step = 1 if inside > exposure.position else -1
     while here != end:
-        share = min(max(share_at_edge(m, here, own.position, inside), begins), ceases)
-        until = _work_until(share, h, own.power, own.power_rate, there[0], there[1]) - before
+        share = min(max(share_at_edge(m, here, exposure.position, inside), begins), ceases)
+        until = _work_until(share, h, exposure.power, exposure.power_rate, there[0], there[1]) - before
         until = min(max(until, done), work)
         m.rows[row + here] += until - done
         here, done = here + step, until
@@ -201,20 +201,20 @@ def _add_parts(m: Model, k: int, h: float, inside: float, side: int, there: tupl
     side : int
         Sign of the sliding speed at the end.
     """
-    own = m.work.exposing.pair[k]
-    row, way = own.row + ROWS.sliding * m.scene.bins, inside - own.position
-    power0, rate0 = own.side * own.power, own.side * own.power_rate
+    exposure = m.work.exposing.pair[k]
+    row, way = exposure.row + ROWS.sliding * m.scene.bins, inside - exposure.position
+    power0, rate0 = exposure.side * exposure.power, exposure.side * exposure.power_rate
     power1, rate1 = side * there[0], side * there[1]
-    pushes, total = own.power >= 0.0 and there[0] >= 0.0, 0.0
+    pushes, total = exposure.power >= 0.0 and there[0] >= 0.0, 0.0
     for part in range(PARTS):
         s = (part + 0.5) / PARTS
         power = cubic(s, h, power0, rate0, power1, rate1)
         if not pushes:
-            power *= own.side if s < 0.5 else side
-        elif side != own.side:
+            power *= exposure.side if s < 0.5 else side
+        elif side != exposure.side:
             power = abs(power)
         work = max(power, 0.0) * h / PARTS
-        m.rows[row + bin_at(m, own.position + s * way)] += work
+        m.rows[row + bin_at(m, exposure.position + s * way)] += work
         total += work
     return total
 
@@ -243,10 +243,10 @@ def time_to_zero(m: Model, k: int, force: float, rate: float) -> float:
     It is infinite beyond the longest interval, and where the pair has not pulled: most contacts cease to push as they
     separate, without a kink.
     """
-    own = m.work.exposing.pair[k]
+    exposure = m.work.exposing.pair[k]
     if force < 0.0:
-        own.pulls = 1
-    if own.pulls == 0 or force * (force + rate * MOST_STEPS * m.work.driver.step) >= 0.0:
+        exposure.pulls = 1
+    if exposure.pulls == 0 or force * (force + rate * MOST_STEPS * m.work.driver.step) >= 0.0:
         return math.inf
     return -force / rate
 

@@ -15,7 +15,7 @@ from gearidae.engine.followers.extremes.speeds import (
 )
 from gearidae.engine.followers.standing import follow as standing
 from gearidae.engine.model.state import PHASE, Floats, Model, Record, U, V, W
-from gearidae.engine.motion.separation import rigid_separation, separation
+from gearidae.engine.motion.observe import rigid_separation, separation
 
 
 @compiled(inline=True)

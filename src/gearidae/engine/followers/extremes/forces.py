@@ -189,5 +189,5 @@ def _records(m: Model) -> tuple[float, float]:
     """Largest and smallest force so far: of the run, or since the last mesh exits where these are kept."""
     if m.scene.follow.passages == 0:
         return m.state.extremes.largest_force, m.state.extremes.smallest_force
-    one, other = m.state.passage[DRIVE], m.state.passage[COAST]
-    return min(one.largest_force, other.largest_force), max(one.smallest_force, other.smallest_force)
+    drive, coast = m.state.passage[DRIVE], m.state.passage[COAST]
+    return min(drive.largest_force, coast.largest_force), max(drive.smallest_force, coast.smallest_force)

@@ -57,9 +57,9 @@ def _exposures(m: Model) -> array[float]:
 
 def _speeds(e: SimpleNamespace, rate: float, time: float, position: float) -> dict[str, Any]:
     """Means and spreads of the speed, and how long adhesion has held the gear, scaled; see `SPEEDS_NOW`."""
-    part = [plain(one) for one in e.part]
-    means = [_mean(one, rate, time, position) for one in part]
-    spreads = [one.highest - one.lowest if one.begun else math.nan for one in part]
+    part = [plain(speed) for speed in e.part]
+    means = [_mean(speed, rate, time, position) for speed in part]
+    spreads = [speed.highest - speed.lowest if speed.begun else math.nan for speed in part]
     turns = e.turn_backs if e.is_stuck else 0
     return {
         "settled_gear_speed": means[0],

@@ -202,8 +202,8 @@ def _note_standstill(m: Model, i: int, time: float, way: float, free: float) -> 
     if at == MOST_STANDSTILLS:  # the shortest makes room
         at = 0
         for j in range(1, MOST_STANDSTILLS):
-            one, least = s.standstill[j], s.standstill[at]
-            if one.end - one.begin < least.end - least.begin:
+            standstill, least = s.standstill[j], s.standstill[at]
+            if standstill.end - standstill.begin < least.end - least.begin:
                 at = j
         if time - start <= s.standstill[at].end - s.standstill[at].begin:
             return
@@ -274,19 +274,19 @@ def _stop_time(m: Model, i: int, t: float) -> float:
 def _hardest(m: Model, t: float) -> float:
     """Time at which the drive exceeds the load most, of a gear that stands at the zero `SPARE`."""
     first, second, third = m.state.segment[0], m.state.segment[1], m.state.segment[2]
-    longest, most, found = m.scene.end - t, -math.inf, t
+    longest, most, time = m.scene.end - t, -math.inf, t
     if m.scene.free_step > 0.0:
         longest = max(m.scene.free_step, longest / LOOKS_AHEAD)
     while True:
         knot = enter_segments(m, t, m.scene.end)
         size = largest_excess(m, SPARE, t, t)
         if size > most + 1e-9 * abs(most) or most == -math.inf:
-            most, found = size, t
+            most, time = size, t
         if t >= m.scene.end:
             break
         t = min(knot, t + longest)
     m.state.segment[0], m.state.segment[1], m.state.segment[2] = first, second, third
-    return found
+    return time
 
 
 STANDING_NUMBERS: Final = 17

@@ -54,9 +54,9 @@ def slowest_period(m: Model) -> float:
     """Period of the slowest harmonic of both torques, over tau; 0 without any."""
     longest = 0.0
     for shaft in range(2):
-        own = m.scene.torque[shaft]
-        for k in range(own.harmonic_count):
-            at = own.harmonics_at + 3 * k
+        torque = m.scene.torque[shaft]
+        for k in range(torque.harmonic_count):
+            at = torque.harmonics_at + 3 * k
             if m.tables[at] != 0.0 and m.tables[at + 1] != 0.0:
                 longest = max(longest, 2.0 * math.pi / abs(m.tables[at + 1]))
     return longest
@@ -66,16 +66,16 @@ def slowest_period(m: Model) -> float:
 def enter_segments(m: Model, t: float, end: float) -> float:
     """Set the segments of all schedules for a time, and return when the next begins, at most `end`."""
     for which in range(SCHEDULES):
-        own = m.scene.schedule[which]
-        step, count = (own.knot_count - 1, 2) if own.cubic != 0 else (1, own.knot_count)
+        schedule = m.scene.schedule[which]
+        step, count = (schedule.knot_count - 1, 2) if schedule.cubic != 0 else (1, schedule.knot_count)
         low, high = 0, count  # knots before `low` have passed, those from `high` on have not
         while low < high:
             middle = (low + high) // 2
-            if m.tables[own.knots_at + 2 * step * middle] <= t:
+            if m.tables[schedule.knots_at + 2 * step * middle] <= t:
                 low = middle + 1
             else:
                 high = middle
         m.state.segment[which] = low
         if low < count:
-            end = min(end, m.tables[own.knots_at + 2 * step * low])
+            end = min(end, m.tables[schedule.knots_at + 2 * step * low])
     return end

@@ -40,7 +40,7 @@ def standing_now(m: Model, place: int, time: float, y: Floats) -> dict[str, Any]
     )
     if at_rest and m.state.hold == HELD_GEAR:
         holding &= ~Holding.FLANK_FRICTION  # the pinion moves
-    rows = [_row(m, plain(one)) for one in s.standstill[: s.stand_count]]
+    rows = [_row(m, plain(standstill)) for standstill in s.standstill[: s.stand_count]]
     if stands:
         rows.append([begin, math.nan, advance, free, held, float(holding), driven, rest])
     known = s.zero_count > 0
@@ -66,18 +66,18 @@ def standing_now(m: Model, place: int, time: float, y: Floats) -> dict[str, Any]
     }
 
 
-def _row(m: Model, one: Any) -> list[float]:
+def _row(m: Model, standstill: Any) -> list[float]:
     """Return the `COLUMNS` of a standstill that has ended."""
-    holding = _holding(m, one.rest_time > 0.5 * (one.end - one.begin), one.excess)
+    holding = _holding(m, standstill.rest_time > 0.5 * (standstill.end - standstill.begin), standstill.excess)
     kept = (
-        one.begin,
-        one.end,
-        one.advance,
-        one.free_advance,
-        one.excess,
+        standstill.begin,
+        standstill.end,
+        standstill.advance,
+        standstill.free_advance,
+        standstill.excess,
         holding,
-        one.driven_time,
-        one.rest_time,
+        standstill.driven_time,
+        standstill.rest_time,
     )
     return [float(number) for number in kept]
 
@@ -85,7 +85,7 @@ def _row(m: Model, one: Any) -> list[float]:
 def _holding(m: Model, at_rest: bool, held: float) -> Holding:
     """What holds a gear that stands: all that is dry, if it is at rest, and adhesion, if that is not enough."""
     dry = Holding(int(m.scene.friction.holding))
-    found = dry if at_rest else Holding(0)
+    holding = dry if at_rest else Holding(0)
     if not at_rest or (held > 0.0 and not dry & ~Holding.DRY_RESISTANCE):
-        found |= Holding.ADHESION
-    return found
+        holding |= Holding.ADHESION
+    return holding

@@ -140,14 +140,14 @@ def _is_needless(m: Model, i: int) -> bool:
 @compiled
 def _most_alike(m: Model) -> int:
     """Zero, but for the first, that differs least from the one before."""
-    zero, least, found = m.state.standing.zero, math.inf, 1
+    zero, least, nearest = m.state.standing.zero, math.inf, 1
     for i in range(1, MOST_ZEROS):
         before, z = zero[i - 1], zero[i]
         apart = abs(z.position - before.position)
         apart += abs(distance(z, z.position) - distance(before, before.position))
         if (z.free_farthest == 0.0) == (before.free_farthest == 0.0) and apart < least:
-            least, found = apart, i
-    return found
+            least, nearest = apart, i
+    return nearest
 
 
 @compiled
@@ -204,7 +204,7 @@ def stood_until(m: Model, i: int, limit: float, length: float) -> tuple[float, f
     s = m.state.standing
     copy_zero(m, SPARE, i)
     z = s.zero[SPARE]
-    found = (0.0, 0.0, 0.0)
+    last = (0.0, 0.0, 0.0)
     before = -1.0
     for k in range(s.slow_count):
         point = s.slow[k]
@@ -214,14 +214,14 @@ def stood_until(m: Model, i: int, limit: float, length: float) -> tuple[float, f
         way, free = distance(z, point.position), z.free_farthest
         margin = 0.5 * free - way
         if _stands(way, free, point.time - z.time, length):
-            found, before = (point.time, way, free), margin
+            last, before = (point.time, way, free), margin
         elif before >= 0.0:
             share = before / (before - margin)
-            found = (found[0] + share * (point.time - found[0]), found[1], found[2])
+            last = (last[0] + share * (point.time - last[0]), last[1], last[2])
             before = -1.0
-    if found[0] == 0.0 and z.onset > 0.0 and z.onset <= limit and z.onset - z.time > SHARE * length:
-        found = (z.onset, distance(z, z.position), 0.0)
-    return found
+    if last[0] == 0.0 and z.onset > 0.0 and z.onset <= limit and z.onset - z.time > SHARE * length:
+        last = (z.onset, distance(z, z.position), 0.0)
+    return last
 
 
 @compiled

@@ -1,10 +1,17 @@
-"""Schedule knots: a torque's schedule enters its next segment."""
+"""Stops of a run: knots where a torque's schedule enters its next segment, and the end before its time (``run.stop``).
+
+The end before its time, where the gear sticks or has made its turns, is the root of a guard, so that the run ends where
+the condition is met, whatever its steps, blocks and samples are.
+"""
 
 from __future__ import annotations
 
+import math
+from typing import Final
+
 from gearidae.compiled import compiled
 from gearidae.engine.events.record import record
-from gearidae.engine.model.state import SCHEDULES, Floats, Model
+from gearidae.engine.model.state import PHASE, SCHEDULES, STOPS, Floats, Model
 from gearidae.engine.torques.schedule import enter_segment
 from gearidae.records import EventKind, Flank
 
@@ -37,3 +44,14 @@ def pass_knot(m: Model, t: float, events: Floats, count: int) -> int:
     if entered == 0:
         return count
     return record(m, events, count, t, _SCHEDULE_KNOT, 0, _NO_FLANK, 0.0)
+
+
+_STICKS: Final = STOPS.index("sticks")
+
+
+@compiled
+def stop_guard(m: Model, t: float, y: Floats) -> float:
+    """Time until a gear that stays within half a pitch has stuck, or the pitches that its turns still lack."""
+    if m.scene.stop == _STICKS:
+        return m.work.track.stop_time - t if m.work.track.stop_time > 0.0 else math.inf
+    return m.scene.stop_pitches - abs(y[PHASE] + m.state.turns - m.scene.stop_from)
