@@ -27,7 +27,7 @@ LIGHT = {
     "windows": "gd.analysis.impact_windows(ds)",
     "signal": "gd.analysis.read_signal(sys.argv[1])",
     "words": "from gearidae.analysis.verdict import outcomes; outcomes(ds)",
-    "account": "from gearidae.archive.run_summary import account; account(ds)",
+    "summary": "from gearidae.archive.run_summary import summary_of; summary_of(ds)",
     "validity": "from gearidae.runs.kept_validity import validity_of; assert len(validity_of(ds)) == 16",
     "accessor": "ds.gearidae.scene; ds.gearidae.verdicts(); ds.gearidae.to_dataframe(); ds.gearidae.events()",
     "chain": "gd.concat([ds.isel(event=slice(0))], 'time')",

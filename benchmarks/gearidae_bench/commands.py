@@ -13,7 +13,7 @@ from rich.console import Console
 from rich.table import Table
 
 from gearidae.cli.codes import DONE, UNFINISHED
-from gearidae.cli.output import say, show, show_rows
+from gearidae.cli.output import print_line, show, show_rows
 from gearidae.errors import SceneError
 from gearidae.runs.executors import check_jobs
 from gearidae_bench import Result, Settings, find_scenes, run_benchmark
@@ -62,7 +62,7 @@ def bench_scenes(scenes: Sequence[str], output: Path | None, *, quick: bool) -> 
     _print(result)
     if output is not None:
         write_result(result, output)
-        say(f"Results: {output}")
+        print_line(f"Results: {output}")
     return DONE
 
 
@@ -86,11 +86,11 @@ def bench_long(passages: int, output: Path | None) -> int:
     with Console(stderr=True).status("") as status:
         parts = measure_long(passages, lambda passed: status.update(f"{passed} of {passages} passages ..."))
     text = long_page(parts)
-    say(text)
+    print_line(text)
     if output is not None:
         output.mkdir(parents=True, exist_ok=True)
         (output / "long.md").write_text(text)
-        say(f"Report: {output / 'long.md'}")
+        print_line(f"Report: {output / 'long.md'}")
     return DONE if sound(parts) else UNFINISHED
 
 
@@ -123,7 +123,7 @@ def bench_accuracy(jobs: int | None, output: Path | None) -> int:
         (output / "images").mkdir(parents=True, exist_ok=True)
         (output / "accuracy.md").write_text(accuracy_page(results, datetime.now(UTC).date()))
         draw_accuracy(results, output / "images" / PICTURE)
-        say(f"Report: {output / 'accuracy.md'}")
+        print_line(f"Report: {output / 'accuracy.md'}")
     return DONE
 
 

@@ -175,7 +175,7 @@ def _sundials(
         place = located.place
 
         def eventsfn(t: float, y: Floats, *rest: Floats) -> None:
-            rest[-1][0] = guard_at(place, t, y.copy())  # what scikit-sundae hands out is read-only
+            rest[-1][0] = guard_at(place, t, y.copy())  # what scikit-sundae passes is read-only
 
         watch: Any = (
             (lambda t, y, yp, out: eventsfn(t, y, out))

@@ -217,7 +217,7 @@ def test_a_spike_is_named_by_its_sample(factor, size, title, maps, speeds):
 
 
 def test_no_clean_record_has_a_lone_sample(speeds):
-    from gearidae.analysis.doubts import lone_samples
+    from gearidae.analysis.record_checks import lone_samples
     from gearidae.analysis.signal import signals
 
     for speed in speeds.values():

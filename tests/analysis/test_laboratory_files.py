@@ -77,23 +77,23 @@ def file(tmp_path):
     return write
 
 
-@pytest.mark.parametrize(("text", "how"), FILES)
-def test_they_are_read(text, how, file):
-    signal = read_signal(file(text), **how)
+@pytest.mark.parametrize(("text", "options"), FILES)
+def test_they_are_read(text, options, file):
+    signal = read_signal(file(text), **options)
     np.testing.assert_allclose(signal.time, TIME, rtol=1e-12, atol=1e-18)
     np.testing.assert_allclose(signal.gear_speed, SPEED, rtol=1e-12)
 
 
-@pytest.mark.parametrize(("text", "how"), FILES)
-def test_a_row_short_in_the_middle_stays_refused(text, how, file):
+@pytest.mark.parametrize(("text", "options"), FILES)
+def test_a_row_short_in_the_middle_stays_refused(text, options, file):
     lines = text.splitlines()
     lines[-50] = "0" if "\t" in lines[-50] or "," in lines[-50] or " " in lines[-50] else "x"
     with pytest.raises(gd.SceneError, match=f"line {len(lines) - 49}"):
-        read_signal(file("\n".join(lines)), **how)
+        read_signal(file("\n".join(lines)), **options)
 
 
 @pytest.mark.parametrize(
-    ("how", "message"),
+    ("options", "message"),
     [
         ({"columns": ("1 [s]", "7 [rad/s]")}, "has no rows with numbers in column 1 and 7"),
         ({"columns": ("1", "2 [rad/s]")}, "states no unit"),
@@ -105,9 +105,9 @@ def test_a_row_short_in_the_middle_stays_refused(text, how, file):
         ({"interval": True}, "interval = True"),
     ],
 )
-def test_what_is_missing_is_named(how, message, file):
+def test_what_is_missing_is_named(options, message, file):
     with pytest.raises(gd.SceneError, match=message):
-        read_signal(file(labview("One")), **how)
+        read_signal(file(labview("One")), **options)
 
 
 @pytest.mark.parametrize("end", ENDS)

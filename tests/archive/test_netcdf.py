@@ -214,7 +214,7 @@ def test_an_unfinished_run_of_version_0_1_0_is_refused_by_name(single, tmp_path)
 
 
 def test_damage_within_samples_is_noticed(large, tmp_path):
-    """A checksum travels with every chunk, so that no wrong number is ever handed out silently."""
+    """A checksum travels with every chunk, so that no wrong number is ever read silently."""
     path = tmp_path / "run.nc"
     save(large, path)
     content = bytearray(path.read_bytes())

@@ -16,7 +16,7 @@ from xarray.backends.netCDF4_ import NetCDF4ArrayWrapper
 import gearidae as gd
 from gearidae.analysis.verdict import outcomes
 from gearidae.archive import netcdf, pieces, save, time_index, to_dataset
-from gearidae.archive import run_summary as account_module
+from gearidae.archive import run_summary as summary_module
 from gearidae.archive.growing import GrowingArchive
 from gearidae.drawing import style
 from gearidae.plot import spectra
@@ -39,7 +39,7 @@ def lengths(monkeypatch):
         (pieces, "PIECE", PIECE),
         (style, "PIECE", PIECE),
         (series, "PIECE", PIECE),
-        (account_module, "PIECE", PIECE),
+        (summary_module, "PIECE", PIECE),
         (style, "_MOST_POINTS", DRAWN),
         (spectra, "_MOST_SAMPLES", ANALYSED),
         (page_module, "pack_runs", partial(pack_runs, most_states=300)),  # which take the most time
@@ -67,12 +67,12 @@ def long(make_solution, tmp_path, lengths):
         yield opened, ds
 
 
-def test_outcome_and_account(long, lengths):
+def test_outcome_and_summary(long, lengths):
     opened, ds = long
     assert_same(outcomes(opened), outcomes(ds))
-    piecewise, whole = account_module.account(opened), account_module.account(ds)
+    piecewise, whole = summary_module.summary_of(opened), summary_module.summary_of(ds)
     assert piecewise.as_plain() == whole.as_plain()  # in which what is not told, NaN, equals itself
-    assert 1 < max(lengths) <= PIECE + 2  # pieces of the account overlap
+    assert 1 < max(lengths) <= PIECE + 2  # pieces of the summary overlap
 
 
 def test_pictures_and_report(long, lengths):

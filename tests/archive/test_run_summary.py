@@ -1,4 +1,4 @@
-"""The account of a run against what is known of it on paper."""
+"""The summary of a run against what is known of it on paper."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import gearidae as gd
 from gearidae import engine
 from gearidae.archive import run_summary as account_module
 from gearidae.archive.end_state import end_state_of
-from gearidae.archive.run_summary import account
+from gearidae.archive.run_summary import summary_of
 from gearidae.archive.summary_rows import summary_rows
 from gearidae.archive.totals import extremes_of
 from gearidae.archive.variables import ENERGY_BALANCE
@@ -50,7 +50,7 @@ def braking():
 
 
 def test_dry_resistance_stops_the_gear_and_the_books_balance(braking):
-    told = account(braking)
+    told = summary_of(braking)
     assert told.held_by == "dry resistance"
     assert told.sticks == told.slips + 1
     stuck = braking.event_time[braking.event_kind == 6][-1].item()
@@ -76,7 +76,7 @@ def test_work_of_a_schedule_on_a_free_pinion():
         {"drive.schedule": [[0.0, 0.0], [duration, torque]], "run.duration": duration, "run.rtol": 1e-9}
     )
     ds = gd.simulate(scene)
-    told = account(ds)
+    told = summary_of(ds)
     work = (torque * duration) ** 2 / (8.0 * scene.gears.pinion_inertia)
     assert told.impacts == 0
     assert told.drive_work == pytest.approx(work, rel=1e-5, abs=0.0)
@@ -87,7 +87,7 @@ def test_work_of_a_schedule_on_a_free_pinion():
 
 def test_held_at_rest_from_the_beginning_to_the_end():
     ds = gd.simulate(FREE.replace({"load.torque": 1e-15}))
-    told = account(ds)
+    told = summary_of(ds)
     assert told.time_at_rest == pytest.approx(1e-3, rel=1e-12)
     assert told.held_by == "dry resistance"
     assert (told.top_speed, told.sticks) == (0.0, 0)
@@ -97,7 +97,7 @@ def test_held_at_rest_from_the_beginning_to_the_end():
 def test_start_up_rests_until_the_first_slip_and_then_comes_to_speed():
     scene = gd.load_case(CASES / "start_up.toml").replace({"run.duration": "12 ms", "run.samples": 12_001})
     ds = gd.simulate(scene)
-    told = account(ds)
+    told = summary_of(ds)
     assert told.time_at_rest == pytest.approx(ds.event_time[ds.event_kind == 7][0].item(), rel=1e-9)
     assert 0.0031 - 2e-4 < told.time_at_rest < told.time_to_speed < 0.012  # torque over ratio: 31 % of 10 ms
     first = np.flatnonzero(ds.gear_speed >= 0.95 * ds.gear_speed.max())[0]
@@ -105,7 +105,7 @@ def test_start_up_rests_until_the_first_slip_and_then_comes_to_speed():
 
 
 def test_adhesion_holds_a_worn_gear_and_lets_a_coated_one_go():
-    worn = account(gd.simulate(LOW.replace({"coating.sam_fraction": 0.4})))
+    worn = summary_of(gd.simulate(LOW.replace({"coating.sam_fraction": 0.4})))
     assert worn.held_by == "adhesion"
     assert worn.time_at_rest == 0.0
     assert 0.1 < worn.time_adhering < 0.3
@@ -114,14 +114,14 @@ def test_adhesion_holds_a_worn_gear_and_lets_a_coated_one_go():
     back = np.flatnonzero((speed[:-1] > 0.0) & (speed[1:] < 0.0))  # turned back, a microsecond apart
     assert (np.abs(np.diff(place[back])) < 0.5).all()
     assert worn.time_adhering == pytest.approx(0.3 - rocking.time[back[0]].item(), abs=1e-6)
-    coated = account(gd.simulate(LOW))
+    coated = summary_of(gd.simulate(LOW))
     assert (coated.held_by, coated.time_adhering) == ("", 0.0)
 
 
 def test_pieces_do_not_matter(braking, monkeypatch):
-    whole = account(braking)
+    whole = summary_of(braking)
     monkeypatch.setattr(account_module, "PIECE", 1000)
-    pieces = account(braking)
+    pieces = summary_of(braking)
     for name, value in whole.as_plain().items():
         expected = value if isinstance(value, str) else pytest.approx(value, rel=1e-9, abs=1e-24)
         assert pieces.as_plain()[name] == expected
@@ -129,14 +129,14 @@ def test_pieces_do_not_matter(braking, monkeypatch):
 
 def test_without_samples_and_of_rollers():
     worn = LOW.replace({"coating.sam_fraction": 0.4})
-    told, sampled = (account(gd.simulate(worn.replace({"run.samples": n}))) for n in ("off", 301))
+    told, sampled = (summary_of(gd.simulate(worn.replace({"run.samples": n}))) for n in ("off", 301))
     assert math.isnan(told.time_to_speed)  # that of a sample
     for name, value in sampled.as_plain().items():  # all else is kept by the solver
         if name != "time_to_speed":
             assert told.as_plain()[name] == value, name
     assert told.drive_work > 0.0
     assert told.impacts > 0
-    assert account(gd.simulate(gd.preset("roller_slow"))) is None
+    assert summary_of(gd.simulate(gd.preset("roller_slow"))) is None
 
 
 def test_the_energies_are_those_summed_over_the_samples(braking):
@@ -145,8 +145,8 @@ def test_the_energies_are_those_summed_over_the_samples(braking):
     Samples every 20 ns: what contacts lose is a hundredth of the other energies, and an impact takes a microsecond.
     """
     dense = gd.simulate(braking.gearidae.scene.replace({"run.samples": 700_001}))
-    told = account(dense)
-    assert told.contact_loss == account(braking).contact_loss  # whatever is sampled
+    told = summary_of(dense)
+    assert told.contact_loss == summary_of(braking).contact_loss  # whatever is sampled
     summed, coarse = (
         SampledWork(dense.gearidae.scene, dense.isel(time=slice(None, None, n))) for n in (1, 2)
     )
@@ -160,7 +160,7 @@ def test_the_energies_are_those_summed_over_the_samples(braking):
 
 def test_of_a_run_without_an_energy_balance_no_energies_are_told(braking):
     partial = braking.drop_vars("residual")
-    told, whole = account(partial).as_plain(), account(braking).as_plain()
+    told, whole = summary_of(partial).as_plain(), summary_of(braking).as_plain()
     energies = {name for name, value in told.items() if value is None}
     assert energies == {*ENERGY_BALANCE, "contact_loss", "friction_loss", "efficiency"}
     assert {name: value for name, value in told.items() if name not in energies} == {
@@ -170,7 +170,7 @@ def test_of_a_run_without_an_energy_balance_no_energies_are_told(braking):
 
 def test_the_accessor_and_info_have_the_summary(tmp_path, capsys):
     ds = gd.simulate(LOW, archive=tmp_path / "run.nc")
-    wanted = account(gd.simulate(LOW)).as_plain()
+    wanted = summary_of(gd.simulate(LOW)).as_plain()
     assert ds.gearidae.account.as_plain() == wanted
     assert main(["info", str(tmp_path / "run.nc"), "--json"]) == 0
     facts = json.loads(capsys.readouterr().out)
@@ -206,7 +206,7 @@ def test_the_extremes_of_an_unfinished_run_are_those_of_its_newest_checkpoint(tm
     assert {name: getattr(extremes, name) for name in numbers} == pytest.approx(
         numbers, rel=1e-12, abs=0, nan_ok=True
     )
-    told = account(ds)
+    told = summary_of(ds)
     assert (told.top_speed, told.time_adhering) == (extremes.max_gear_speed, extremes.time_adhering)
     (outcome,) = gd.outcomes(ds)
     assert outcome.max_speed == extremes.max_gear_speed
@@ -231,7 +231,7 @@ def test_what_friction_takes_and_holds():
         }
     )
     ds = gd.simulate(scene)
-    told, kept = account(ds), ds.gearidae.energy_balance
+    told, kept = summary_of(ds), ds.gearidae.energy_balance
     assert told.held_by == "dry resistance and flank friction"
     speed = ds.gear_speed.values
     assert told.time_at_rest == pytest.approx((speed == 0.0).mean() * 40e-6, abs=2e-7)
@@ -245,7 +245,7 @@ def test_what_friction_takes_and_holds():
     supplied = told.drive_work - told.kinetic_change
     assert lost + told.contact_loss - told.adhesion_loss == pytest.approx(supplied, rel=1e-4, abs=0.0)
     waiting = {"initial.gear_speed": 0.0, "drive.torque": 1e-14, "initial.gap": 1e-7, "run.duration": 1e-7}
-    still = account(gd.simulate(scene.replace(waiting)))
+    still = summary_of(gd.simulate(scene.replace(waiting)))
     assert still.held_by == "dry resistance"  # the pinion moves
     assert still.time_at_rest == pytest.approx(1e-7, rel=1e-12)
 
@@ -254,11 +254,11 @@ def test_what_holds_the_gear_is_said_alike_wherever_it_is_said(braking):
     """Summary, words, table and variable; an archive of version 0.2 has its events alone."""
     (outcome,) = gd.outcomes(braking)
     words = Holding(int(braking.holding)).words
-    assert account(braking).held_by == outcome.holding.words == words == "dry resistance"
+    assert summary_of(braking).held_by == outcome.holding.words == words == "dry resistance"
     assert braking.gearidae.standstills()["held_by"].iloc[-1] == words
-    earlier = account(braking.drop_vars(["rest_time", "holding", "followed_time"]))
+    earlier = summary_of(braking.drop_vars(["rest_time", "holding", "followed_time"]))
     assert earlier.held_by == words
-    assert earlier.time_at_rest == pytest.approx(account(braking).time_at_rest, rel=1e-9)
+    assert earlier.time_at_rest == pytest.approx(summary_of(braking).time_at_rest, rel=1e-9)
 
 
 def test_the_balance_shows_no_rounding(braking):

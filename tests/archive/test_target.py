@@ -19,7 +19,7 @@ from gearidae.archive import check_target, save, target, to_dataset
 from gearidae.archive.lock import WriterLock, is_locked
 from gearidae.cli import main
 from gearidae.report import write_report
-from gearidae.runs.kept_runs import folder_beside
+from gearidae.runs.run_cache import folder_beside
 from reference.small_studies import STUDIES
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 1e-3, "run.samples": 11})
@@ -51,12 +51,12 @@ POSTERIOR = xr.Dataset(
 def products(single):
     """All that is saved, by its name."""
     return STUDIES | {
-        "simulate": lambda path, **how: gd.simulate(LOW, archive=path, **how),
-        "sweep": lambda path, **how: gd.sweep(LOW, FRACTIONS, archive=path, jobs=1, **how),
-        "predict": lambda path, **how: gd.studies.predict(LOW, POSTERIOR, 2, archive=path, **how),
-        "save": lambda path, **how: save(single, path, **how),
-        "report": lambda path, **how: write_report(single, path, **how),
-        "picture": lambda path, **how: gd.plot.write(matplotlib.figure.Figure(), path, **how),
+        "simulate": lambda path, **options: gd.simulate(LOW, archive=path, **options),
+        "sweep": lambda path, **options: gd.sweep(LOW, FRACTIONS, archive=path, jobs=1, **options),
+        "predict": lambda path, **options: gd.studies.predict(LOW, POSTERIOR, 2, archive=path, **options),
+        "save": lambda path, **options: save(single, path, **options),
+        "report": lambda path, **options: write_report(single, path, **options),
+        "picture": lambda path, **options: gd.plot.write(matplotlib.figure.Figure(), path, **options),
     }
 
 
@@ -92,9 +92,9 @@ def test_what_is_no_regular_file_is_never_replaced(kind, product, single, tmp_pa
     path = Path("out.png")
     kind(path)
     before = os.lstat(path)
-    for how in ({"overwrite": True}, {}):
+    for options in ({"overwrite": True}, {}):
         with pytest.raises(gd.SceneError, match=r"^\w+ = out.png: is (no regular file|a folder)"):
-            products(single)[product](path, **how)
+            products(single)[product](path, **options)
     after = os.lstat(path)
     assert (after.st_mode, after.st_ino, after.st_rdev) == (before.st_mode, before.st_ino, before.st_rdev)
     assert {entry.name for entry in tmp_path.iterdir()} <= {"out.png", "there"}
@@ -153,10 +153,10 @@ def test_a_sweep_keeps_its_archive_and_the_folder_beside_it(other, single, tmp_p
     path, refused = tmp_path / "out.nc", []
 
     def attempt():
-        for how in ({"overwrite": True}, {}):
+        for options in ({"overwrite": True}, {}):
             with pytest.raises(gd.SceneError, match="is being written by another run"):
-                products(single)[other](path, **how)
-            refused.append(how)
+                products(single)[other](path, **options)
+            refused.append(options)
 
     def look(done, total):
         if done == total and not refused:

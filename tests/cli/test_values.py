@@ -27,7 +27,7 @@ from gearidae.scene.pairs import assignments, sweep_values
         ("a.b=[[0, 1e-18], [1.0, 2e-18]]", [[0, 1e-18], [1.0, 2e-18]]),
         ("a.b={amplitude = 1e-19, frequency = 10}", {"amplitude": 1e-19, "frequency": 10}),
         ("a.b=x=y", "x=y"),
-        ("a.b=1\nc=2", "1\nc=2"),  # no second key by the back door
+        ("a.b=1\nc=2", "1\nc=2"),  # a line break begins no second key
     ],
 )
 def test_values_are_toml_or_text(pair, value):

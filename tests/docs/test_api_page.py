@@ -21,7 +21,7 @@ def test_every_name_is_reachable_and_has_words(name):
 
 
 def test_the_page_lists_all_that_is_public():
-    rooms = {
+    packages = {
         "analysis",
         "contact",
         "plot",
@@ -33,11 +33,11 @@ def test_the_page_lists_all_that_is_public():
         "torques",
         "wear",
     }
-    assert rooms <= set(gd.__all__)
-    assert set(gd.__all__) - rooms - {"__version__"} <= set(NAMES)
-    for room in ("plot", "studies", "surfaces"):
+    assert packages <= set(gd.__all__)
+    assert set(gd.__all__) - packages - {"__version__"} <= set(NAMES)
+    for package in ("plot", "studies", "surfaces"):
         listed = {name.rpartition(".")[2] for name in NAMES}
-        assert set(getattr(gd, room).__all__) <= listed
+        assert set(getattr(gd, package).__all__) <= listed
 
 
 def test_all_public_names_load():

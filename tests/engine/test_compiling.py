@@ -44,18 +44,18 @@ def test_nothing_is_said_where_nothing_is_compiled(fresh, caplog):
 
 
 def test_the_outermost_says_it_once(fresh, caplog):
-    with compiling("the house", "a while"):
-        with compiling("a room", "no time"):
+    with compiling("the engine", "a while"):
+        with compiling("a part", "no time"):
             fresh()(1.0)
         fresh()(1.0)
     assert [message.split(":")[0] for message in caplog.messages] == [
-        "compiling the house for this machine",
-        "the house",
+        "compiling the engine for this machine",
+        "the engine",
     ]
     caplog.clear()
-    with compiling("a room", "no time"):
+    with compiling("a part", "no time"):
         fresh()(1.0)
-    assert "a room" in caplog.text
+    assert "a part" in caplog.text
 
 
 def test_an_error_ends_it(fresh, caplog):

@@ -329,8 +329,8 @@ def test_what_holds_an_engine_at_rest_names_its_joints():
     scene = engine(
         0.3, 600, duration=1e-3, **{"gears.gear_axial_load": 1e-3, "gears.gear_dimple_radius": 1e-4}
     )
-    account = gd.simulate(scene).gearidae.account
-    assert account.held_by == "dry resistance and hub friction and pin friction and axial load"
+    summary = gd.simulate(scene).gearidae.account
+    assert summary.held_by == "dry resistance and hub friction and pin friction and axial load"
 
 
 @pytest.mark.parametrize(("backend", "method"), [("native", "bdf"), ("sksundae", "auto")])

@@ -1,4 +1,4 @@
-"""More events than a block of output holds: blocks are handed out in time, and no event is lost."""
+"""More events than a block of output holds: blocks are yielded in time, and no event is lost."""
 
 import numpy as np
 import pytest

@@ -37,7 +37,7 @@ def many_knots(count, duration):
 
 
 def overrun():
-    """20,000 restarts and no block: the portable driver hands out events only where it does not restart."""
+    """20,000 restarts and no block: the portable driver yields events only where it does not restart."""
     return HIGH.replace({"drive.schedule": many_knots(20_000, 1e-4), "run.duration": 1e-4, "run.samples": 11})
 
 

@@ -12,7 +12,7 @@ import xarray as xr
 
 import gearidae as gd
 from gearidae import engine
-from gearidae.runs.kept_runs import KeptRuns, folder_beside
+from gearidae.runs.run_cache import RunCache, folder_beside
 from sweeps import without_times
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 2e-3})
@@ -81,7 +81,7 @@ def test_members_of_others_stay(cut_off):
     with pytest.warns(UserWarning, match="5 of the runs kept .* left there"):
         gd.studies.ensemble(LOW, VARY, 4, seed=1, jobs=1, archive=cut_off, resume=True)
     assert len(list(folder_beside(cut_off).iterdir())) == 5
-    kept = KeptRuns(cut_off, LOW, "native")
+    kept = RunCache(cut_off, LOW, "native")
     assert kept.count() == 5
     kept.remove()
     assert not folder_beside(cut_off).exists()

@@ -16,7 +16,7 @@ import gearidae as gd
 from gearidae import engine
 from gearidae.errors import Interrupted
 from gearidae.records import Events, Solution, Statistics
-from gearidae.runs.kept_runs import KeptRuns
+from gearidae.runs.run_cache import RunCache
 from sweeps import without_times
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 2e-3, "run.samples": 101})
@@ -298,7 +298,7 @@ def test_every_number_survives(tmp_path):
         statistics = Statistics(1, 2, 3, 4, 5, 6, 7, 0.1, "native", {"coast": np.int64(3), "drag": True})
         samples = {"height": numbers[:count], "speed": -numbers[:count]}
         run = Solution(np.arange(float(count)), samples, events, statistics, "finished", "", 0.1 * count)
-        kept = KeptRuns(tmp_path / "a.nc", LOW, "native")
+        kept = RunCache(tmp_path / "a.nc", LOW, "native")
         kept.keep(LOW, run)
         back, *judged = kept.take(LOW)
         for mine, theirs in [

@@ -93,7 +93,8 @@ def test_the_sampler_finds_the_same(seen):
     }
     posterior = gd.studies.calibrate(LOW, priors, seen, steps=500, seed=3)
     short = [
-        gd.studies.calibrate(LOW, priors, seen, steps=20, seed=3, method=how) for how in ("auto", "emcee")
+        gd.studies.calibrate(LOW, priors, seen, steps=20, seed=3, method=method)
+        for method in ("auto", "emcee")
     ]
     assert np.array_equal(short[0].torque, short[1].torque)
     mean, deviation = normal_posterior(5.0, 0.5, [4.2, 4.5, 4.4], 0.3)

@@ -60,7 +60,7 @@ def test_several_runs_have_no_one_scene(ds):
 
 @pytest.mark.parametrize("fraction", FRACTIONS)
 def test_a_run_is_what_simulate_returns(ds, fraction):
-    """All of it: samples, events, scene, statistics, energy balance, extremes, account."""
+    """All of it: samples, events, scene, statistics, energy balance, extremes, summary."""
     alone = gd.simulate(scene_at(fraction, 5e-18))
     assert plain(ds.gearidae.run(sam_fraction=fraction, torque=5e-18)).identical(plain(alone))
     assert plain(ds.sel(sam_fraction=fraction).gearidae.run(torque=5e-18)).identical(plain(alone))

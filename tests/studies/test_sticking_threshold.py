@@ -12,7 +12,7 @@ import gearidae as gd
 from gearidae.analysis.verdict import outcomes
 from gearidae.cli import main
 from gearidae.runs.running import unsolved
-from gearidae.studies import sticking_threshold as door
+from gearidae.studies import sticking_threshold as study
 from gearidae.studies import threshold_run
 from gearidae.studies.declared import threshold
 
@@ -100,15 +100,15 @@ def test_an_end_that_fails_is_an_error(monkeypatch):
 )
 def test_bad_requests_are_refused(settings, key):
     with pytest.raises(gd.SceneError) as refused:
-        door(LOW, **({"between": BETWEEN, "exits": 2} | settings))
+        study(LOW, **({"between": BETWEEN, "exits": 2} | settings))
     assert refused.value.key == key
 
 
 def test_scenes_without_a_threshold_are_refused():
     with pytest.raises(gd.SceneError):
-        door(gd.preset("roller_slow"), between=BETWEEN)
+        study(gd.preset("roller_slow"), between=BETWEEN)
     with pytest.raises(gd.SceneError, match="schedule"):
-        door(LOW.replace({"drive.schedule": [[0.0, 0.0], [0.1, 1e-18]]}), between=BETWEEN)
+        study(LOW.replace({"drive.schedule": [[0.0, 0.0], [0.1, 1e-18]]}), between=BETWEEN)
 
 
 def test_the_command_prints_the_brackets(brackets, tmp_path, monkeypatch, capsys):

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Unpack
 import numpy as np
 import xarray as xr
 
-from gearidae.analysis import doubts
+from gearidae.analysis import record_checks
 from gearidae.analysis.assessment_words import (
     calibration_words,
     listed,
@@ -192,7 +192,7 @@ def judge(signal: Signal, model: MapModel, sensor: Sensor) -> Assessment:
     speed = signal.forward()
     speed = replace(speed, calibration=sensor.uncertainty(float(np.median(speed.values))))
     assessment = _judged(speed, model, sensor)
-    if alone := doubts.lone_samples(speed):
+    if alone := record_checks.lone_samples(speed):
         return _without_answer(assessment, "does not fit", lone_words(speed, alone))
     if assessment.verdict != "gear stops":
         assessment = _calibrated(assessment, speed, model)
@@ -211,7 +211,7 @@ def _calibrated(assessment: Assessment, signal: Signal, model: MapModel) -> Asse
     corrected = replace(signal, values=signal.values / spacing)
     responses = rings_of(corrected, model.width)
     ringing = [n for n, ring in enumerate(responses) if math.isfinite(ring.frequency)]
-    if len(ringing) < _FEWEST_RINGS or doubts.persistent(corrected, responses, ringing, model.width):
+    if len(ringing) < _FEWEST_RINGS or record_checks.persistent(corrected, responses, ringing, model.width):
         return assessment
     frequencies = tuple(ring.frequency for ring in responses)
     why = calibration_words(spacing, signal.calibration, [frequencies[n] for n in ringing])
@@ -234,14 +234,14 @@ def _without_answer(assessment: Assessment, verdict: str, why: str) -> Assessmen
 def _judged(signal: Signal, model: MapModel, sensor: Sensor) -> Assessment:
     """Judge the record of a gear that turns forward."""
     responses = rings_of(signal, model.width)
-    step = doubts.quantum(signal.values)
+    step = record_checks.quantum(signal.values)
     frequencies = tuple(ring.frequency for ring in responses)
     speed = float(np.median(signal.values))
     silent = Assessment(
         math.nan, math.nan, math.nan, "no impacts", "", frequencies, "unknown", gear_speed=speed
     )
     ringing = [n for n, ring in enumerate(responses) if math.isfinite(ring.frequency)]
-    shown = [n for n in ringing if not doubts.too_coarse(responses[n], step)]
+    shown = [n for n in ringing if not record_checks.too_coarse(responses[n], step)]
     if not ringing:
         return replace(silent, explanation=silence(responses))
     if 2 * len(shown) < len(ringing):
@@ -253,15 +253,15 @@ def _judged(signal: Signal, model: MapModel, sensor: Sensor) -> Assessment:
     rings = RingSet(
         np.array(shown),
         np.array([responses[n].frequency for n in shown]),
-        np.array([doubts.widened(responses[n], step) for n in shown]),
+        np.array([record_checks.widened(responses[n], step) for n in shown]),
         speed,
-        doubts.unsteadiness(signal),
+        record_checks.unsteadiness(signal),
         signal.calibration,
     )
-    stopped = doubts.stop(signal, model)
+    stopped = record_checks.stop(signal, model)
     if stopped:
         return replace(silent, verdict="gear stops", explanation=stop_words(stopped, rings))
-    if doubts.persistent(signal, responses, shown, model.width):
+    if record_checks.persistent(signal, responses, shown, model.width):
         return replace(silent, verdict="does not fit", explanation=tone_words(rings))
     may_be_start = _may_be_start(signal, model, responses, len(shown))
     fit = first_explanation(model, rings, sensor.history, may_be_start=may_be_start)
@@ -284,10 +284,10 @@ def _vetoed(
     assessment: Assessment, signal: Signal, model: MapModel, rings: RingSet, fit: Fit, cutoff: float
 ) -> Assessment:
     """Take a clear answer back where something is wrong with the record."""
-    why = doubts.slower_than_map(signal, model)
+    why = record_checks.slower_than_map(signal, model)
     verdict, text = "gear stops", stop_words(why, rings)
     if not why:
-        why = doubts.alias(model, rings, fit, signal.rate, cutoff)
+        why = record_checks.alias(model, rings, fit, signal.rate, cutoff)
         verdict = "sampled too slowly"
         text = f"impacts seem to ring at {listed(rings.frequency)} Hz, but {why}"
     if not why:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from gearidae.archive.end_state import end_state_attributes
 from gearidae.archive.exposures import exposure_coordinates, exposure_variables
-from gearidae.archive.keep import EVERYTHING, Keep
+from gearidae.archive.keep import EVERYTHING, OutputSelection
 from gearidae.archive.provenance import provenance, surface_regimes
 from gearidae.archive.rows import DIMS, row_variables
 from gearidae.archive.sample_table import SampleTable
@@ -123,7 +123,7 @@ def combine(
     scenes: Sequence[Scene],
     solutions: Sequence[Solution],
     *,
-    keep: Keep = EVERYTHING,
+    keep: OutputSelection = EVERYTHING,
     samples: SampleTable | None = None,
 ) -> xr.Dataset:
     """Stack the runs of a sweep into one dataset.
@@ -137,7 +137,7 @@ def combine(
     scenes, solutions : sequence
         The runs in the order of ``itertools.product`` over the swept values (the last key changes fastest). A
         run that produced nothing has empty arrays and says why in its status.
-    keep : Keep, optional
+    keep : OutputSelection, optional
         Which variables the dataset has; by default all.
     samples : SampleTable, optional
         Holds the samples, if the solutions do not.
@@ -200,7 +200,7 @@ def combine(
 
 
 def _of_runs(
-    scenes: Sequence[Scene], solutions: Sequence[Solution], keep: Keep
+    scenes: Sequence[Scene], solutions: Sequence[Solution], keep: OutputSelection
 ) -> dict[str, tuple[Variable, NDArray[Any]]]:
     """One value a run of what is kept: how it ended, its statistics and its input."""
     columns: dict[str, tuple[Variable, NDArray[Any]]] = {}

@@ -55,7 +55,7 @@ _IN_WORDS = (
 
 
 @dataclass(frozen=True, slots=True)
-class Keep:
+class OutputSelection:
     """The parts of its runs that a sweep keeps.
 
     Attributes
@@ -95,12 +95,12 @@ class Keep:
         return replace(solution, time=time, samples=samples, reached=reached, checkpoint=None, **gone)
 
 
-EVERYTHING = Keep()
+EVERYTHING = OutputSelection()
 _NO_TIMES = np.empty(0)
 """Shared by all runs that keep none."""
 
 
-def read_keep(keep: Iterable[str] | str | None, scene: Scene) -> Keep:
+def read_keep(keep: Iterable[str] | str | None, scene: Scene) -> OutputSelection:
     """Read what the runs of a sweep are to leave behind.
 
     Parameters
@@ -143,10 +143,10 @@ def read_keep(keep: Iterable[str] | str | None, scene: Scene) -> Keep:
             meant = did_you_mean(str(name), members) or f"known are {', '.join(GROUPS)} and single variables"
             raise SceneError("keep", shorten(name), f"is nothing that a run of this scene leaves; {meant}")
         names.update(members[name])
-    return Keep(tuple(sorted({*asked, "verdict"})), frozenset(names))
+    return OutputSelection(tuple(sorted({*asked, "verdict"})), frozenset(names))
 
 
-def kept_in(attributes: Any, scene: Scene) -> Keep:
+def kept_in(attributes: Any, scene: Scene) -> OutputSelection:
     """Read the attribute ``keep`` of a dataset; everything if it has none.
 
     Raises

@@ -3,7 +3,7 @@
 Read from a dataset of any length in pieces; it stands beside the other readers of datasets, because the report needs it
 as well as the runs do. Extremes, times at rest and held by adhesion, what holds the gear, and energies are those that
 the engine kept at its own steps; a run that is not at its end has extremes
-of its newest checkpoint and no energies. `Account.time_to_speed` always is that of a sample.
+of its newest checkpoint and no energies. `RunSummary.time_to_speed` always is that of a sample.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ OF_ONE_RUN: Final = frozenset({"time_to_speed", "sticks", "slips", "impacts"})
 """Rows of the run summary that begin with a run that goes on from another; everything else goes on over the chain."""
 
 
-class Account(Totals):
+class RunSummary(Totals):
     """What one run of a gear pair did: the energies of `ENERGY_BALANCE` [J], and more; NaN for what has not been kept.
 
     Of a run that goes on from another, `OF_ONE_RUN` names what is of this run alone.
@@ -81,7 +81,7 @@ class Account(Totals):
         return {name: None if isinstance(v, float) and math.isnan(v) else v for name, v in self.items()}
 
 
-def account(ds: xr.Dataset) -> Account | None:
+def summary_of(ds: xr.Dataset) -> RunSummary | None:
     """Summarise a run.
 
     Parameters
@@ -91,7 +91,7 @@ def account(ds: xr.Dataset) -> Account | None:
 
     Returns
     -------
-    Account or None
+    RunSummary or None
         None for a roller, and for a sweep.
 
     Raises
@@ -115,7 +115,7 @@ def account(ds: xr.Dataset) -> Account | None:
     held_by = incidents.holds() if resting else "adhesion" if extremes.turn_backs > 1 else ""
     if not math.isnan(extremes.rest_time):  # else an archive of version 0.2, or without a checkpoint yet
         at_rest, held_by = extremes.rest_time, Holding(extremes.holding).words
-    return Account(
+    return RunSummary(
         top_speed=extremes.max_gear_speed,
         time_to_speed=_time_to_speed(ds, top),
         sticks=incidents.counts[EventKind.STICK],
@@ -136,7 +136,7 @@ def counted_over(name: str, attributes: Mapping[Hashable, Any]) -> str:
     Parameters
     ----------
     name : str
-        Of an attribute of `Account`, or a term of the balance.
+        Of an attribute of `RunSummary`, or a term of the balance.
     attributes : mapping
         Of the run's dataset.
     """

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from gearidae.archive.dataset import combine, dimension_names, key_labels
-from gearidae.archive.keep import EVERYTHING, Keep
+from gearidae.archive.keep import EVERYTHING, OutputSelection
 from gearidae.archive.provenance import provenance
 from gearidae.archive.rows import DIMS
 from gearidae.archive.sample_table import SampleTable
@@ -29,7 +29,7 @@ def stack(
     scenes: Sequence[Scene],
     solutions: Sequence[Solution],
     *,
-    keep: Keep = EVERYTHING,
+    keep: OutputSelection = EVERYTHING,
     samples: SampleTable | None = None,
 ) -> xr.Dataset:
     """Put runs into one dataset.
@@ -42,7 +42,7 @@ def stack(
         For each dimension, the values of its keys in SI units; several keys where they are zipped.
     scenes, solutions : sequence
         One for each run; the last axis changes fastest.
-    keep : Keep, optional
+    keep : OutputSelection, optional
         Which variables the dataset has; by default all.
     samples : SampleTable, optional
         Holds the samples, if the solutions do not.

@@ -12,7 +12,7 @@ from typing import Any, TypeAlias
 
 import xarray as xr
 
-from gearidae.archive.run_summary import account, counted_over
+from gearidae.archive.run_summary import counted_over, summary_of
 from gearidae.archive.totals import balance_of, imbalance
 from gearidae.records.energy import LOSSES, TERMS
 from gearidae.scene.prefixes import with_prefix
@@ -34,7 +34,7 @@ def summary_rows(ds: xr.Dataset) -> list[Row]:
     list of (str, str, str)
     """
     rows: list[Row] = []
-    if summary := account(ds):
+    if summary := summary_of(ds):
         rows += _with_reach(ds, _summary_rows(summary.as_plain()))
     rows += _standing_rows(ds)
     if numbers := balance_of(ds):

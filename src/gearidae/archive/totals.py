@@ -167,7 +167,7 @@ def imbalance_of(ds: xr.Dataset) -> float:
     return math.nan if kept is None else imbalance(kept["residual"], kept["residual_bound"])
 
 
-def doubt(out_by: float) -> str:
+def imbalance_words(out_by: float) -> str:
     """Words to add to what is said of a run whose `imbalance` is above one; empty if it is not, or not known."""
     if not out_by > 1.0:
         return ""

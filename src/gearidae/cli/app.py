@@ -368,9 +368,9 @@ def schema(*, output: Output = None, overwrite: Overwrite = False) -> int:
 @app.command(name="compile")
 def compile_solver() -> int:
     """Compile the solver for this machine ahead of the first run: once, for some minutes."""
-    from gearidae.cli.output import say
+    from gearidae.cli.output import print_line
     from gearidae.compiled.cache import cache_folder
 
     gearidae.compile()
-    say(f"Compiled code: {cache_folder()}")
+    print_line(f"Compiled code: {cache_folder()}")
     return 0

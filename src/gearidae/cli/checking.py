@@ -11,7 +11,7 @@ import numpy as np
 from gearidae.archive.variables import EVENTS
 from gearidae.cli.case import read_scene
 from gearidae.cli.codes import DONE
-from gearidae.cli.output import say, show_rows
+from gearidae.cli.output import print_line, show_rows
 from gearidae.cli.tables import show_validity
 from gearidae.progress import in_words
 from gearidae.runs.plausibility import doubts
@@ -54,11 +54,11 @@ def check_case(case: str, settings: Sequence[str]) -> int:
     rows = validity_rows(scene)
     show_validity(rows, about=contact_subject(roller=scene.roller is not None))
     if scene.contact.is_discrete:
-        say("A run is one specimen of this design: contact.seed numbers the others.")
+        print_line("A run is one specimen of this design: contact.seed numbers the others.")
     elif note := mean_note(rows):
-        say(f"Verdicts of runs are a {note}")
+        print_line(f"Verdicts of runs are a {note}")
     for doubt in doubts(scene):
-        say(f"Warning: {doubt}")
+        print_line(f"Warning: {doubt}")
     return DONE
 
 

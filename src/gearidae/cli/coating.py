@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import gearidae as gd
 from gearidae.cli.case import selected
 from gearidae.cli.codes import DONE
-from gearidae.cli.machine import say_json
-from gearidae.cli.output import say
+from gearidae.cli.machine import print_json
+from gearidae.cli.output import print_line
 from gearidae.scene.pairs import quantity
 
 if TYPE_CHECKING:
@@ -68,11 +68,11 @@ def assess_signal(
     assessment = gd.analysis.assess(record, mapped, **known)
     if as_json:
         derived = {"uncertainty": assessment.uncertainty, "conclusive": assessment.conclusive}
-        say_json({**asdict(assessment), **derived})
+        print_json({**asdict(assessment), **derived})
         return DONE
     if assessment.reading:
-        say(f"{signal}: {assessment.reading}")
-    say(f"{assessment.verdict}: {assessment.explanation}")
+        print_line(f"{signal}: {assessment.reading}")
+    print_line(f"{assessment.verdict}: {assessment.explanation}")
     return DONE
 
 

@@ -13,7 +13,7 @@ from cyclopts import CycloptsError
 
 from gearidae.cli.codes import BAD_INPUT, DONE, INTERRUPTED, UNFINISHED
 from gearidae.cli.interrupts import ENDINGS, interrupts_kept, stopped_by
-from gearidae.cli.output import complain
+from gearidae.cli.output import print_error
 from gearidae.cli.session import app
 from gearidae.cli.streams import stop_output
 from gearidae.errors import GearidaeError, SceneError
@@ -35,25 +35,25 @@ def _run(tokens: Sequence[str]) -> int:
     try:
         code = app.meta(tokens, exit_on_error=False, print_error=False, result_action="return_value")
     except CycloptsError as error:
-        return _complain(f"{' '.join(str(error).split())} (see gearidae --help)", BAD_INPUT)
+        return _print_error(f"{' '.join(str(error).split())} (see gearidae --help)", BAD_INPUT)
     except SceneError as error:
-        return _complain(str(error), BAD_INPUT)
+        return _print_error(str(error), BAD_INPUT)
     except GearidaeError as error:
-        return _complain(str(error), UNFINISHED)
+        return _print_error(str(error), UNFINISHED)
     except KeyboardInterrupt as interrupt:
         word, code = ENDINGS.get(stopped_by(), ("interrupted", INTERRUPTED))
-        return _complain(f"{word}{''.join(f'; {note}' for note in interrupt.args)}", code)
+        return _print_error(f"{word}{''.join(f'; {note}' for note in interrupt.args)}", code)
     except BrokenPipeError:
         stop_output()
         return DONE
     except OSError as error:
         # A disk that is full where compiled code is kept, say; of the user's own files the commands say more.
-        return _complain(f"the system refuses to go on: {error}", UNFINISHED)
+        return _print_error(f"the system refuses to go on: {error}", UNFINISHED)
     return code if isinstance(code, int) else DONE
 
 
-def _complain(message: str, code: int) -> int:
-    complain(message)
+def _print_error(message: str, code: int) -> int:
+    print_error(message)
     return code
 
 
@@ -85,7 +85,7 @@ def _warnings_as_lines() -> Iterator[None]:
     """Print a warning, such as of a damaged run, as a message to the user: without a line of code."""
     with warnings.catch_warnings(action="always", category=UserWarning):
         # numba adds a traceback to its own
-        warnings.showwarning = lambda message, *_: complain(
+        warnings.showwarning = lambda message, *_: print_error(
             str(message).partition("Traceback (most recent")[0].strip(" :\n")
         )
         yield

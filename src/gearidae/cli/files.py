@@ -13,8 +13,8 @@ from gearidae.archive.rows import DIMS
 from gearidae.archive.select import is_roller, scene_of, swept_dims
 from gearidae.archive.target import whole_file
 from gearidae.cli.codes import DONE
-from gearidae.cli.machine import archive_facts, product_facts, say_json
-from gearidae.cli.output import say, show_rows
+from gearidae.cli.machine import archive_facts, print_json, product_facts
+from gearidae.cli.output import print_line, show_rows
 from gearidae.cli.tables import show_outcomes, show_summary, show_validity
 from gearidae.errors import SceneError
 from gearidae.records import ROWS, Events
@@ -57,7 +57,7 @@ def write_case(name: str, preset: str) -> int:
             f"# Keys behind a # are not set; some take the place of others.\n\n{text}",
             encoding="utf-8",
         )
-    say(f"Wrote {path}")
+    print_line(f"Wrote {path}")
     return DONE
 
 
@@ -83,7 +83,7 @@ def describe(archive: Path, *, as_json: bool = False) -> int:
     """
     ds, kind = open_product(archive)
     if as_json:
-        say_json(archive_facts(archive, ds) if kind == "runs" else product_facts(archive, ds, kind))
+        print_json(archive_facts(archive, ds) if kind == "runs" else product_facts(archive, ds, kind))
         return DONE
     if kind == "runs":
         show_rows(_description(archive, ds))
@@ -93,7 +93,7 @@ def describe(archive: Path, *, as_json: bool = False) -> int:
         result = answer(ds, kind)
         show_rows([*_contents(archive, ds), *_scene_rows(ds)])
         show_rows(result.rows)
-        say(result.sentence)
+        print_line(result.sentence)
     if kind == "runs" or ATTRIBUTE in ds.attrs:  # working the rows out loads the solver
         show_validity(validity_of(ds), about=contact_subject(roller=is_roller(ds), swept=swept_dims(ds)))
     return DONE
@@ -194,9 +194,9 @@ def write_schema(output: Path | None, *, overwrite: bool) -> int:
     """
     text = json.dumps(gd.Scene.json_schema(), indent=2)
     if output is None:
-        say(text)
+        print_line(text)
         return DONE
     with whole_file(output, overwrite=overwrite, name="schema", remedy="allow --overwrite") as part:
         part.write_text(text + "\n", encoding="utf-8")
-    say(f"Schema: {output}")
+    print_line(f"Schema: {output}")
     return DONE

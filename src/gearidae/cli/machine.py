@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gearidae.analysis.verdict import outcomes
-from gearidae.archive.run_summary import account
+from gearidae.archive.run_summary import summary_of
 from gearidae.archive.select import scene_of, swept_dims
 from gearidae.archive.totals import energy_balance
-from gearidae.cli.output import say
+from gearidae.cli.output import print_line
 from gearidae.studies.products import answer
 
 if TYPE_CHECKING:
@@ -27,9 +27,9 @@ _ATTRIBUTES = (
 )  # fmt: skip
 
 
-def say_json(facts: Mapping[str, Any]) -> None:
+def print_json(facts: Mapping[str, Any]) -> None:
     """Print facts as one JSON object; what is not a number or infinite becomes null, which JSON has instead."""
-    say(json.dumps(_plain(facts), indent=2, allow_nan=False))
+    print_line(json.dumps(_plain(facts), indent=2, allow_nan=False))
 
 
 def archive_facts(archive: Path, ds: xr.Dataset) -> dict[str, Any]:
@@ -42,7 +42,7 @@ def archive_facts(archive: Path, ds: xr.Dataset) -> dict[str, Any]:
     ds : xarray.Dataset
         What is in it.
     """
-    summary = account(ds)
+    summary = summary_of(ds)
     return {
         "file": str(archive),
         "bytes": archive.stat().st_size,

@@ -41,7 +41,7 @@ class _Plain:
 
 
 @contextmanager
-def hushed(wanted: bool) -> Iterator[None]:
+def quieted(wanted: bool) -> Iterator[None]:
     """Print no results and no progress inside the block, if wanted."""
     token = _quiet.set(wanted)
     try:
@@ -55,7 +55,7 @@ def is_quiet() -> bool:
     return _quiet.get()
 
 
-def say(text: str) -> None:
+def print_line(text: str) -> None:
     """Print a line of results, without wrapping."""
     _write(f"{printable(text)}\n")
 
@@ -84,7 +84,7 @@ def show_rows(rows: Iterable[tuple[str, str, str]]) -> None:
     show(table)
 
 
-def complain(message: str) -> None:
+def print_error(message: str) -> None:
     """Print one line to standard error, under the program's name."""
     with suppress(OSError):  # standard error is closed too
         sys.stderr.write(f"gearidae: {printable(' '.join(message.split()))}\n")

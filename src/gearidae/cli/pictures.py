@@ -11,7 +11,7 @@ import gearidae as gd
 from gearidae.archive.select import swept_dims
 from gearidae.cli.case import default_output, selected
 from gearidae.cli.codes import DONE
-from gearidae.cli.output import say
+from gearidae.cli.output import print_line
 from gearidae.drawing.picture import usual_style
 from gearidae.errors import SceneError
 from gearidae.plot.files import MOVING
@@ -108,7 +108,7 @@ def draw(
         figure = drawn if isinstance(drawn, Figure) else drawn.get_figure(root=True)
         assert figure is not None
         gd.plot.write(figure, target, overwrite=overwrite)
-    say(f"Picture: {target}")
+    print_line(f"Picture: {target}")
     return DONE
 
 
@@ -151,5 +151,5 @@ def report_archive(archive: Path, output: Path | None, *, overwrite: bool, teeth
         ds = with_validity(ds, gd.Scene.from_dict(scene_of(ds)))
     target = output or default_output(str(archive), ".html")
     target = write_report(ds, target, overwrite=overwrite, teeth=teeth)
-    say(f"Report: {target}")
+    print_line(f"Report: {target}")
     return DONE

@@ -18,7 +18,7 @@ import gearidae
 from gearidae.archive.target import is_input, keeps_inputs
 from gearidae.cli.app import app
 from gearidae.cli.examples import EXAMPLES, epilogue
-from gearidae.cli.output import complain, hushed
+from gearidae.cli.output import print_error, quieted
 from gearidae.errors import GearidaeError, SceneError
 from gearidae.printable import printable
 from gearidae.studies.declared import command_help
@@ -81,7 +81,7 @@ def session(
     with (
         keeps_inputs(_read(tokens)),
         _logging(level, log_file),
-        hushed(quiet and bool(tokens) and tokens[0] in _WRITERS),
+        quieted(quiet and bool(tokens) and tokens[0] in _WRITERS),
     ):
         return _run(tokens)
 
@@ -126,7 +126,7 @@ class _LogFile(logging.FileHandler):
         """Say that the log ends here."""
         if not self._lost:
             self._lost = True
-            complain(f"the log {self.baseFilename} cannot be written: {sys.exc_info()[1]}")
+            print_error(f"the log {self.baseFilename} cannot be written: {sys.exc_info()[1]}")
 
     def close(self) -> None:
         """Close the file; what is left to be written may not fit either."""

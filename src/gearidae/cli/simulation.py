@@ -12,11 +12,11 @@ from gearidae.archive import check_target
 from gearidae.archive.select import run_value, runs
 from gearidae.cli.case import check_dask, default_output, read_scene
 from gearidae.cli.codes import DONE, UNFINISHED
-from gearidae.cli.output import complain, is_quiet, say
+from gearidae.cli.output import is_quiet, print_error, print_line
 from gearidae.cli.tables import label_text, show_outcomes, show_summary
 from gearidae.errors import SceneError, SolverError
 from gearidae.runs.executors import check_jobs, dask_executor
-from gearidae.runs.kept_runs import folder_beside
+from gearidae.runs.run_cache import folder_beside
 from gearidae.scene.pairs import sweep_values
 from gearidae.studies.announcement import grid_words
 
@@ -76,14 +76,14 @@ def run_case(
         if error.dataset is not None:
             show_outcomes(error.dataset)
             show_summary(error.dataset)
-            say(f"Archive of the run up to the failure: {target}")
-        complain(str(error))
+            print_line(f"Archive of the run up to the failure: {target}")
+        print_error(str(error))
         return UNFINISHED
     show_outcomes(ds)
     show_summary(ds)
     if was_finished:
-        say("The run in this archive was already finished; nothing was computed.")
-    say(f"Archive: {target}")
+        print_line("The run in this archive was already finished; nothing was computed.")
+    print_line(f"Archive: {target}")
     return DONE
 
 
@@ -148,12 +148,12 @@ def sweep_case(
             keep=keep,
         )
     show_outcomes(ds)
-    say(f"Archive: {target}")
+    print_line(f"Archive: {target}")
     unfinished = () if (ds["status"] == "finished").all() else runs(ds)
     failed = [(label, run) for label, run in unfinished if run_value(run, "status") != "finished"]
     for label, run in failed:
-        complain(f"{label_text(label)}: {run_value(run, 'message') or run_value(run, 'status')}")
-    say(headline(ds))
+        print_error(f"{label_text(label)}: {run_value(run, 'message') or run_value(run, 'status')}")
+    print_line(headline(ds))
     return UNFINISHED if failed else DONE
 
 
@@ -179,7 +179,7 @@ def announce(
     if not resume and not folder_beside(target).exists():
         check_target(target, overwrite=overwrite)
     if words:
-        say(f"{title} of {scene.name}: {words}")
+        print_line(f"{title} of {scene.name}: {words}")
 
 
 def _check_resume(*, resume: bool, overwrite: bool) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import gearidae as gd
 from gearidae.cli.case import check_dask, default_output, read_scene
 from gearidae.cli.codes import DONE, UNFINISHED
-from gearidae.cli.output import complain, is_quiet, say, show_rows
+from gearidae.cli.output import is_quiet, print_error, print_line, show_rows
 from gearidae.cli.simulation import announce
 from gearidae.cli.tables import name_failures
 from gearidae.runs.executors import check_jobs
@@ -60,9 +60,9 @@ def run_study(study: Study, case: str, request: Request, call: Call) -> int:
         )
     result = answer(ds, kind_of(ds))
     show_rows(result.rows)
-    say(f"{study.title}: {target}")
+    print_line(f"{study.title}: {target}")
     code = _code(ds)
-    say(result.sentence)
+    print_line(result.sentence)
     return code
 
 
@@ -74,5 +74,5 @@ def _code(ds: xr.Dataset) -> int:
         return UNFINISHED if name_failures(ds) else DONE
     failed = int((ds["status"].values != "finished").sum())
     if failed:
-        complain(f"{failed} runs could not be finished: their status and message are in the file")
+        print_error(f"{failed} runs could not be finished: their status and message are in the file")
     return UNFINISHED if failed else DONE

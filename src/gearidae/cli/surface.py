@@ -10,7 +10,7 @@ import gearidae as gd
 from gearidae.archive.target import check_target, whole_file
 from gearidae.cli.case import read_scene
 from gearidae.cli.codes import DONE
-from gearidae.cli.output import say
+from gearidae.cli.output import print_line
 from gearidae.cli.surface_table import show_surface
 from gearidae.errors import SceneError
 from gearidae.scene.prefixes import with_prefix
@@ -107,13 +107,13 @@ def analyse_scan(
 
         with usual_style():
             gd.plot.write(gd.plot.surface(surface.statistics, surface.cutoff), picture, overwrite=overwrite)
-        say(f"Picture: {picture}")
+        print_line(f"Picture: {picture}")
     if output is not None and text is not None:
         with whole_file(output, overwrite=overwrite, name="output") as part:
             part.write_text(text, encoding="utf-8")
-        say(f"{'Surface' if choices.case is None else 'Case'}: {output}")
+        print_line(f"{'Surface' if choices.case is None else 'Case'}: {output}")
     elif choices.cutoff is None:
-        say("The numbers depend on the cut-off wavelength: choose one with --cutoff.")
+        print_line("The numbers depend on the cut-off wavelength: choose one with --cutoff.")
     return DONE
 
 
@@ -128,8 +128,10 @@ def _write_list(path: Path, text: str, surface: gd.surfaces.MeasuredSurface, *, 
         part.write_text(text, encoding="utf-8")
     assert surface.asperities is not None
     length, width = (with_prefix(surface.asperities.attrs[side], "m", 3) for side in ("length", "width"))
-    say(f"Note: the list covers a flank of {length}, {width} wide; teeth that meet beyond touch nothing.")
-    say(f"Asperities: {path}")
+    print_line(
+        f"Note: the list covers a flank of {length}, {width} wide; teeth that meet beyond touch nothing."
+    )
+    print_line(f"Asperities: {path}")
 
 
 def _size(asked: str | None, extent: tuple[float, float] | None) -> str | tuple[float | str, float | str]:
@@ -139,7 +141,7 @@ def _size(asked: str | None, extent: tuple[float, float] | None) -> str | tuple[
             raise SceneError("--size", asked, "must be one length or two")
         if extent is not None:
             stated = ", ".join(with_prefix(length, "m", 4) for length in extent)
-            say(f"Note: the file states an extent of {stated}; --size replaces it.")
+            print_line(f"Note: the file states an extent of {stated}; --size replaces it.")
         return parts[0] if len(parts) == 1 else (parts[0], parts[1])
     if extent is None:
         raise SceneError("--size", "(none)", "is needed: this file does not tell its extent, such as 2 um")

@@ -8,7 +8,7 @@ import numpy as np
 from rich import box
 from rich.table import Table
 
-from gearidae.cli.output import say, show
+from gearidae.cli.output import print_line, show
 from gearidae.scene.prefixes import with_prefix
 
 if TYPE_CHECKING:
@@ -56,9 +56,9 @@ def show_surface(surface: MeasuredSurface) -> None:
         table.add_row(*_cells(row, "> " if chosen else ""))
     show(table)
     for remark in surface.remarks:
-        say(f"Note: {remark}")
+        print_line(f"Note: {remark}")
     if surface.cutoff is not None:
-        say(surface.planes)
+        print_line(surface.planes)
 
 
 def _cells(row: xr.Dataset, mark: str) -> list[str]:

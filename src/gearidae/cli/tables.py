@@ -15,7 +15,7 @@ from gearidae.analysis.verdict.table import cells, headings
 from gearidae.archive.select import scene_of, swept_dims
 from gearidae.archive.specimen import specimen_note
 from gearidae.archive.summary_rows import summary_rows
-from gearidae.cli.output import complain, say, show, show_rows
+from gearidae.cli.output import print_error, print_line, show, show_rows
 from gearidae.scene.validity_row import ATTRIBUTE, mean_note, rows_from_json
 
 if TYPE_CHECKING:
@@ -47,10 +47,10 @@ def show_outcomes(ds: xr.Dataset) -> None:
         table.add_row(*(_plain(value) for value in outcome.label.values()), *cells(outcome, rtol))
     show(table)
     if specimen := specimen_note(ds):
-        say(specimen)
+        print_line(specimen)
         return
     if note := mean_note(rows_from_json(ds.attrs.get(ATTRIBUTE))):
-        say(f"{'Verdicts are a' if len(judged) > 1 else 'The verdict is a'} {note}")
+        print_line(f"{'Verdicts are a' if len(judged) > 1 else 'The verdict is a'} {note}")
 
 
 def show_summary(ds: xr.Dataset) -> None:
@@ -75,9 +75,9 @@ def name_failures(ds: xr.Dataset) -> int:
     failed = [number for number, word in enumerate(ds["status"].values.tolist()) if word != "finished"]
     for number in failed[:_NAMED]:
         member = ds.isel(member=number)
-        complain(f"member {number}: {member['message'].item() or member['status'].item()}")
+        print_error(f"member {number}: {member['message'].item() or member['status'].item()}")
     if len(failed) > _NAMED:
-        complain(f"{len(failed) - _NAMED} more members could not be finished")
+        print_error(f"{len(failed) - _NAMED} more members could not be finished")
     return len(failed)
 
 

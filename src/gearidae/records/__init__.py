@@ -1,6 +1,6 @@
-"""Plain records that all rooms exchange: samples, events, passages, endings, statistics, totals, solutions.
+"""Plain records that all packages exchange: samples, events, passages, endings, statistics, totals, solutions.
 
-The engine returns them and the archive stores them; nothing here depends on another room.
+The engine returns them and the archive stores them; nothing here depends on another package.
 """
 
 from gearidae.records.columns import (

@@ -1,6 +1,6 @@
 """Running scenes: one run, a sweep, runs that stream into an archive, executors and progress.
 
-The public door: what `gearidae.simulate` and `gearidae.sweep` are, and executors for them; loaded on first use.
+The public API: what `gearidae.simulate` and `gearidae.sweep` are, and executors for them; loaded on first use.
 """
 
 from __future__ import annotations

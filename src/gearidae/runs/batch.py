@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearidae.archive.keep import Keep
+from gearidae.archive.keep import OutputSelection
 from gearidae.archive.sample_table import SampleTable
 from gearidae.archive.stack import stack
 from gearidae.archive.variables import VERDICT
 from gearidae.errors import SceneError
 from gearidae.progress import SweepProgress
-from gearidae.runs.kept_runs import KeptRuns
+from gearidae.runs.run_cache import RunCache
 from gearidae.runs.run_result import RunResult, crashed, solve_and_leave, solve_group
 from gearidae.runs.running import unsolved
 from gearidae.runs.sweep_plan import SweepPlan
@@ -45,9 +45,9 @@ class Batch:
         As for `gearidae.simulate`.
     report : callable
         Called with the number of finished runs and the number of all runs.
-    kept : KeptRuns or None
+    kept : RunCache or None
         Where finished runs are kept until all are.
-    keep : Keep
+    keep : OutputSelection
         What each run leaves behind.
     """
 
@@ -56,8 +56,8 @@ class Batch:
         plan: SweepPlan,
         backend: str,
         report: SweepProgress,
-        kept: KeptRuns | None,
-        keep: Keep,
+        kept: RunCache | None,
+        keep: OutputSelection,
     ) -> None:
         self._plan = plan
         self._scenes = plan.scenes
@@ -76,7 +76,7 @@ class Batch:
         """Number of runs that are to be computed."""
         return len(self._scenes) - len(self._done)
 
-    def take_kept(self, former: KeptRuns) -> None:
+    def take_kept(self, former: RunCache) -> None:
         """Read the runs that an unfinished sweep has kept."""
         for number, scene in enumerate(self._scenes):
             taken = former.take(scene)

@@ -19,7 +19,7 @@ from gearidae.archive.target import check_target, claims_output
 from gearidae.errors import Interrupted, SceneError
 from gearidae.progress import sweep_progress
 from gearidae.runs.executors import check_executor, check_jobs, own_executor, side_by_side
-from gearidae.runs.kept_runs import KeptRuns
+from gearidae.runs.run_cache import RunCache
 from gearidae.runs.running import SomeScene, prepare
 
 if TYPE_CHECKING:
@@ -110,7 +110,7 @@ class Execution:
 
     @contextmanager
     def side_by_side(
-        self, kept: KeptRuns | None, usual: int, at_a_time: int | None = None
+        self, kept: RunCache | None, usual: int, at_a_time: int | None = None
     ) -> Iterator[SideBySide]:
         """Provide `solutions` for a study that usually has so many runs: with this driver, and its progress shown."""
         done = itertools.count(1)
@@ -138,7 +138,7 @@ def prepared(
 
 
 def run_kept(
-    how: Execution,
+    execution: Execution,
     make_store: Callable[[Path], Kept],
     work: Callable[[Kept | None], xr.Dataset],
     about: Mapping[str, Any],
@@ -181,23 +181,23 @@ def run_kept(
         On Ctrl-C.
     """
     attributes = {name: value for name, value in about.items() if value != ""}
-    if how.archive is None:
-        if how.resume:
+    if execution.archive is None:
+        if execution.resume:
             raise SceneError("resume", True, "needs an archive: finished runs are kept beside it")
         with interruptible(None, so_far, attributes):
             return work(None).assign_attrs(attributes)
-    with claims_output(how.archive) as target:
+    with claims_output(execution.archive) as target:
         store = make_store(target)
-        _begin(how, store, scenes)
-        if how.resume and not store.count() and target.exists():
-            whole = _whole(target, about, how.driver, read)
+        _begin(execution, store, scenes)
+        if execution.resume and not store.count() and target.exists():
+            whole = _whole(target, about, execution.driver, read)
             if whole is not None:
                 return whole
 
         def keep(ds: xr.Dataset) -> xr.Dataset:
             made = ds if prepared is None else prepared(ds)
             if made.sizes:
-                save(made, target, overwrite=how.overwrite or how.resume)
+                save(made, target, overwrite=execution.overwrite or execution.resume)
             return ds
 
         def cut_off(ds: xr.Dataset) -> xr.Dataset:
@@ -209,24 +209,24 @@ def run_kept(
     return ds
 
 
-def _begin(how: Execution, store: Store, scenes: Sequence[Scene] | None) -> None:
+def _begin(execution: Execution, store: Store, scenes: Sequence[Scene] | None) -> None:
     """Refuse what is there already, or make room."""
-    assert how.archive is not None
+    assert execution.archive is not None
     count = store.count()
-    if how.resume:
-        if count and scenes is not None and isinstance(store, KeptRuns):
+    if execution.resume:
+        if count and scenes is not None and isinstance(store, RunCache):
             store.note_strangers(scenes)
-    elif count and not how.overwrite:
+    elif count and not execution.overwrite:
         raise SceneError(
             "archive",
-            how.archive,
+            execution.archive,
             f"was cut off, {count} of its runs are in {store.folder.name}: "
             "go on with --resume (resume=True), or start anew with --overwrite (overwrite=True)",
         )
     elif count:
         store.remove()
     else:
-        check_target(how.archive, overwrite=how.overwrite)
+        check_target(execution.archive, overwrite=execution.overwrite)
 
 
 def _whole(
@@ -300,7 +300,7 @@ def origin_of(scene: Scene) -> dict[str, str]:
 
 
 def solutions(
-    kept: KeptRuns | None,
+    kept: RunCache | None,
     executor: Executor | None,
     function: Callable[..., tuple[Solution, str]],
     scenes: Sequence[Scene],

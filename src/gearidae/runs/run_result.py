@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from gearidae.analysis.verdict.judge import verdict_of
-from gearidae.archive.keep import Keep
+from gearidae.archive.keep import OutputSelection
 from gearidae.errors import SceneError
 from gearidae.records import Solution
 from gearidae.runs.running import solve, unsolved
@@ -34,7 +34,7 @@ class RunResult:
 
 
 def solve_and_leave(
-    scene: Scene, backend: str, keep: Keep, on_progress: Callable[[float, int], None] | None = None
+    scene: Scene, backend: str, keep: OutputSelection, on_progress: Callable[[float, int], None] | None = None
 ) -> RunResult:
     """Run a scene, judge it, and drop what is not kept, where it was run.
 
@@ -48,19 +48,19 @@ def solve_and_leave(
     return leave(scene, solve(scene, backend, on_progress), keep)
 
 
-def leave(scene: Scene, solution: Solution, keep: Keep) -> RunResult:
+def leave(scene: Scene, solution: Solution, keep: OutputSelection) -> RunResult:
     """Judge a run and drop what is not kept of it."""
     if keep.names is None:
         return RunResult(solution)
     return RunResult(keep.thinned(solution), *verdict_of(scene, solution))
 
 
-def crashed(scene: Scene, error: Exception, keep: Keep) -> RunResult:
+def crashed(scene: Scene, error: Exception, keep: OutputSelection) -> RunResult:
     """Return what is left of a run that died, such as of memory that ran out."""
     return leave(scene, unsolved("crashed", f"{type(error).__name__}: {error}"), keep)
 
 
-def solve_group(scenes: Sequence[Scene], backend: str, keep: Keep) -> list[RunResult]:
+def solve_group(scenes: Sequence[Scene], backend: str, keep: OutputSelection) -> list[RunResult]:
     """Run scenes one after the other; one that dies is no end of the others.
 
     Parameters

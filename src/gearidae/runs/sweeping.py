@@ -8,14 +8,14 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from concurrent.futures import Executor
 from typing import TYPE_CHECKING, Any
 
-from gearidae.archive.keep import EVERYTHING, Keep, read_keep
+from gearidae.archive.keep import EVERYTHING, OutputSelection, read_keep
 from gearidae.errors import Interrupted
 from gearidae.progress import SweepProgress, sweep_progress
 from gearidae.runs.batch import Batch
 from gearidae.runs.execution import Execution, origin_of, run_kept
 from gearidae.runs.imbalance import log_imbalance
-from gearidae.runs.kept_runs import KeptRuns
 from gearidae.runs.kept_validity import with_validity
+from gearidae.runs.run_cache import RunCache
 from gearidae.runs.running import prepare
 from gearidae.runs.sweep_plan import SweepPlan, plan_sweep
 
@@ -110,17 +110,17 @@ def sweep(
     parts = read_keep(keep, base)
     if not parts.columns(base):
         base = base.replace({"run.samples": "off"})
-    how = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
-    return run_study(plan_sweep(base, over, zipped=zipped), how, {}, keep=parts)
+    execution = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
+    return run_study(plan_sweep(base, over, zipped=zipped), execution, {}, keep=parts)
 
 
 def run_study(
     plan: SweepPlan,
-    how: Execution,
+    execution: Execution,
     about: Mapping[str, str],
     finish: Callable[[xr.Dataset], xr.Dataset] = lambda ds: ds,
     *,
-    keep: Keep | None = None,
+    keep: OutputSelection | None = None,
 ) -> xr.Dataset:
     """Compute the runs of a plan, and make the dataset of a sweep or a study of them.
 
@@ -130,7 +130,7 @@ def run_study(
         What the result depends on besides the runs, as attributes.
     finish : callable, optional
         Makes the study's dataset of that of the runs.
-    keep : Keep, optional
+    keep : OutputSelection, optional
         What each run leaves behind; by default its verdict and its extremes.
 
     Returns
@@ -151,15 +151,15 @@ def run_study(
         **origin_of(plan.base), "swept": plan.swept, "zipped": plan.zipped, "keep": asked, **about,
     }  # fmt: skip
 
-    def work(kept: KeptRuns | None) -> xr.Dataset:
+    def work(kept: RunCache | None) -> xr.Dataset:
         try:
-            return finish(run_plan(plan, how, kept, keep))
+            return finish(run_plan(plan, execution, kept, keep))
         except Interrupted as interrupt:
             raise Interrupted("", finish(interrupt.dataset)) from None
 
     return run_kept(
-        how,
-        lambda target: KeptRuns(target, plan.base, how.driver, keep),
+        execution,
+        lambda target: RunCache(target, plan.base, execution.driver, keep),
         work,
         expected,
         scenes=plan.scenes,
@@ -167,14 +167,16 @@ def run_study(
     )
 
 
-def run_plan(plan: SweepPlan, how: Execution, kept: KeptRuns | None, keep: Keep = EVERYTHING) -> xr.Dataset:
+def run_plan(
+    plan: SweepPlan, execution: Execution, kept: RunCache | None, keep: OutputSelection = EVERYTHING
+) -> xr.Dataset:
     """Compute the runs of a sweep.
 
     Parameters
     ----------
-    kept : KeptRuns, optional
+    kept : RunCache, optional
         Where finished runs are taken from, and kept.
-    keep : Keep, optional
+    keep : OutputSelection, optional
         What each run leaves behind.
 
     Raises
@@ -182,13 +184,13 @@ def run_plan(plan: SweepPlan, how: Execution, kept: KeptRuns | None, keep: Keep 
     Interrupted
         On Ctrl-C, with the runs that are finished; the others are marked.
     """
-    with sweep_progress(how.progress, len(plan.scenes)) as report:
-        batch = Batch(plan, how.backend, report, kept, keep)
+    with sweep_progress(execution.progress, len(plan.scenes)) as report:
+        batch = Batch(plan, execution.backend, report, kept, keep)
         try:
             if kept is not None and kept.count():
                 batch.take_kept(kept)
-            with how.computing(batch.left) as executor:
-                batch.run(executor, threads=how.threads())
+            with execution.computing(batch.left) as executor:
+                batch.run(executor, threads=execution.threads())
         except KeyboardInterrupt:
             raise Interrupted("", batch.dataset()) from None
     ds = batch.dataset()

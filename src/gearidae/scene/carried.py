@@ -1,6 +1,6 @@
 """Numbers as other libraries hand them over: with a unit of their own, as durations, masked or missing.
 
-The one door for numbers and arrays from Python: quantities of pint, arrays of xarray with the attribute ``units``,
+The only reader of numbers and arrays from Python: quantities of pint, arrays of xarray with the attribute ``units``,
 durations of numpy, pandas and the standard library, masked arrays, missing values of pandas. What carries a unit is
 converted. Truth values, dates and complex numbers are no numbers.
 """

@@ -77,10 +77,10 @@ def _table(scene: Scene) -> str:
     rows = []
     table = ""
     for key, value in flat(scene.to_dict()).items():
-        room, _, last = key.partition(".")
-        if last and room != table:
-            table = room
-            rows.append(f'<tr><th colspan="3" style="text-align: left">{html.escape(room)}</th></tr>')
+        section, _, last = key.partition(".")
+        if last and section != table:
+            table = section
+            rows.append(f'<tr><th colspan="3" style="text-align: left">{html.escape(section)}</th></tr>')
         if last:
             rows.append(_row(key, last, value, changed.get(key)))
     gone = [(key, old) for key, (old, new) in changed.items() if new is None]

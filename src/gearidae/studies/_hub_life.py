@@ -14,7 +14,7 @@ from gearidae.archive.provenance import provenance
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError, SolverError
 from gearidae.runs.execution import RunOptions, prepared
-from gearidae.runs.kept_runs import KeptRuns
+from gearidae.runs.run_cache import RunCache
 from gearidae.runs.running import failure_of
 from gearidae.scene import require_gears
 from gearidae.scene.joints import joints
@@ -145,7 +145,7 @@ def hub_life(
     grows by 2 h at most; a worn pin adds none.
     """
     scene = require_gears(scene)
-    base, how = prepared(scene, options, samples="off")
+    base, execution = prepared(scene, options, samples="off")
     wear = _wear(base, coefficient, threshold, (spread, seeds), length)
     measured = Turns(whole("turns", turns, 1, 10_000), _TOLERANCE.take("tolerance", tolerance))
     requested = None
@@ -156,8 +156,8 @@ def hub_life(
         raise SceneError("frequencies", "[]", "must be one number at least")
     runs = [settling_scene(steady, measured) for steady in scenes]
 
-    def work(kept: KeptRuns | None) -> xr.Dataset:
-        with how.side_by_side(kept, len(runs)) as compute:
+    def work(kept: RunCache | None) -> xr.Dataset:
+        with execution.side_by_side(kept, len(runs)) as compute:
             words = [word for _, word in compute(run_turns, runs, measured)]
         return _dataset(base, wear, requested, words, clearance=clearance)
 
@@ -171,7 +171,7 @@ def hub_life(
         "length": wear.length,
         "turns": [measured.count, measured.tolerance],
     }
-    return STUDY.compute(how, runs[0], work, settings, origin=scene)
+    return STUDY.compute(execution, runs[0], work, settings, origin=scene)
 
 
 def at_frequency(scene: GearScene, frequency: float) -> GearScene:

@@ -19,14 +19,14 @@ from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.progress import sweep_progress
 from gearidae.runs.execution import RunOptions, prepared
-from gearidae.runs.kept_runs import KeptRuns
+from gearidae.runs.run_cache import RunCache
 from gearidae.scene import require_gears
 from gearidae.scene.quantity import whole
 from gearidae.studies.cycle_jump import Life, jump
 from gearidae.studies.declared.life import STUDY
 from gearidae.studies.life_coverage import coverage_of
 from gearidae.studies.life_dataset import life_dataset
-from gearidae.studies.life_rates import MOST_STATES, DirectCycles, StateResult, Windows
+from gearidae.studies.life_rates import MOST_STATES, DirectCycles, LifeSamples, StateResult
 from gearidae.studies.life_window import Cycles, window_scene
 from gearidae.studies.requirements import require_constant
 from gearidae.wear import LossLaw
@@ -122,7 +122,7 @@ def life(
     >>> found.attrs["passages_to_sticking"]  # doctest: +SKIP
     """
     scene = require_gears(scene)
-    base, how = prepared(scene, options, samples="off")
+    base, execution = prepared(scene, options, samples="off")
     count = _check(
         base, law, passages, fraction, (places, cycles, settle, starts), (tolerance, bracket), resolved
     )
@@ -130,17 +130,17 @@ def life(
     length = Cycles(settle, count, tolerance)
     window = window_scene(base, length, places)
     history = Life()
-    windows = Windows(window, coverage, law, length, starts, how.backend)
-    direct = DirectCycles(windows)
+    samples = LifeSamples(window, coverage, law, length, starts, execution.backend)
+    direct = DirectCycles(samples)
 
-    def work(kept: KeptRuns | None) -> xr.Dataset:
-        windows.kept = kept
+    def work(kept: RunCache | None) -> xr.Dataset:
+        samples.kept = kept
         with (
-            sweep_progress(how.progress, MOST_STATES) as windows.report,
-            how.computing(starts) as windows.executor,
+            sweep_progress(execution.progress, MOST_STATES) as samples.report,
+            execution.computing(starts) as samples.executor,
         ):
             jump(
-                windows.rate,
+                samples.rate,
                 coverage.start,
                 passages=passages,
                 tolerance=tolerance,
@@ -153,7 +153,7 @@ def life(
 
     settings = [law.describe(), passages, fraction, resolved, places, cycles, settle, starts]
     return STUDY.compute(
-        how,
+        execution,
         window,
         work,
         [*settings, tolerance, bracket, frequency],
@@ -165,21 +165,21 @@ def life(
 
 def _dataset(scene: GearScene, direct: DirectCycles, history: Life, *, frequency: bool) -> xr.Dataset:
     """Make the dataset of a life, with the state at which it sticks as its last if there is one."""
-    windows = direct.windows
+    samples = direct.samples
     seen = [_seen(direct, state) for state in history.states]
-    ds = life_dataset(scene, windows.coverage, history, seen, frequency=frequency)
-    simulated = windows.mesh_cycles + direct.run
+    ds = life_dataset(scene, samples.coverage, history, seen, frequency=frequency)
+    simulated = samples.mesh_cycles + direct.run
     teeth = scene.gears.pinion_teeth
     whole = history.passages[-1] * teeth
     ends = {} if math.isnan(history.sticks_by) else {"passages_to_sticking": history.sticks_by}
     return ds.assign_attrs(
         {
-            "law": json.dumps(windows.law.describe()),
-            "law_source": windows.law.source,
+            "law": json.dumps(samples.law.describe()),
+            "law_source": samples.law.source,
             "ending": history.ending,
             **ends,
-            "states": len(windows.seen),
-            "windows": windows.run,
+            "states": len(samples.seen),
+            "windows": samples.run,
             "mesh_cycles_simulated": simulated,
             "mesh_cycles_direct": direct.run,
             "mesh_cycles_jumped": max(whole - simulated, 0.0),
@@ -192,9 +192,9 @@ def _dataset(scene: GearScene, direct: DirectCycles, history: Life, *, frequency
 def _seen(direct: DirectCycles, state: Floats) -> StateResult:
     """What the windows of a state have shown, or its cycle where the coverage was followed cycle by cycle."""
     cycle = direct.seen.get(state.tobytes())
-    if cycle is not None and not direct.windows.turns(state):
+    if cycle is not None and not direct.samples.turns(state):
         return cycle
-    return direct.windows.of(state)
+    return direct.samples.of(state)
 
 
 def _so_far(scene: GearScene, direct: DirectCycles, history: Life) -> xr.Dataset:
@@ -202,7 +202,7 @@ def _so_far(scene: GearScene, direct: DirectCycles, history: Life) -> xr.Dataset
     done = [
         number
         for number, state in enumerate(history.states)
-        if direct.windows.has(state) or state.tobytes() in direct.seen
+        if direct.samples.has(state) or state.tobytes() in direct.seen
     ]
     if not done:
         return xr.Dataset()

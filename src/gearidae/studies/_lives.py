@@ -22,7 +22,7 @@ from gearidae.errors import SceneError, SolverError
 from gearidae.progress import sweep_progress
 from gearidae.runs.execution import RunOptions, origin_of, prepared, run_kept
 from gearidae.runs.executors import side_by_side
-from gearidae.runs.kept_runs import circumstances, name_of
+from gearidae.runs.run_cache import circumstances, name_of
 from gearidae.scene.group import did_you_mean
 from gearidae.studies._life import life
 from gearidae.studies.declared.lives import STUDY
@@ -114,7 +114,7 @@ def lives(
     """
     chosen: Any = dict(options)
     settings = {name: chosen.pop(name) for name in options if name not in RunOptions.__annotations__}
-    base, how = prepared(scene, chosen, samples="off")
+    base, execution = prepared(scene, chosen, samples="off")
     check_design(size, design, seed, indices=False)
     _check_settings(law, settings)
     distributions = read_distributions(base, vary, parameter_units(law))
@@ -127,13 +127,13 @@ def lives(
         law_of_member.check(scene_of_member)
     about = {"design": design, "seed": int(seed), "size": int(size), "of": None, "distributions": texts}
 
-    def work(kept: _KeptLives | None) -> xr.Dataset:
-        common = _Common(settings, how.backend, None if kept is None else kept.folder)
+    def work(kept: _LifeCache | None) -> xr.Dataset:
+        common = _Common(settings, execution.backend, None if kept is None else kept.folder)
         followed: list[_Member] = []
         with (
             nullcontext() if kept is None else kept,
-            sweep_progress(how.progress, len(members)) as report,
-            how.computing(len(members)) as computing,
+            sweep_progress(execution.progress, len(members)) as report,
+            execution.computing(len(members)) as computing,
         ):
             for member in side_by_side(computing, _follow, members, [common] * len(members)):
                 followed.append(member)
@@ -141,10 +141,10 @@ def lives(
         return _dataset(base, law, distributions, values, followed)
 
     depends = {"ensemble": json.dumps(about), "settings": json.dumps([law.describe(), settings])}
-    return run_kept(how, _KeptLives, work, {**origin_of(base), **depends}, read=open_lives)
+    return run_kept(execution, _LifeCache, work, {**origin_of(base), **depends}, read=open_lives)
 
 
-class _KeptLives:
+class _LifeCache:
     """The lives of an unfinished ensemble, each in a file of its own beside the archive, in ``OUT.nc.lives``."""
 
     def __init__(self, archive: Path) -> None:

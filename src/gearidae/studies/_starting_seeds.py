@@ -16,7 +16,7 @@ from gearidae.archive.variables import SAM_FRACTION
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.runs.execution import Execution, SideBySide
-from gearidae.runs.kept_runs import KeptRuns
+from gearidae.runs.run_cache import RunCache
 from gearidae.runs.running import failure_of
 from gearidae.scene.quantity import whole
 from gearidae.studies.declared.starting_torque import GEARS, SEEDS, SLOW_ENOUGH
@@ -130,7 +130,7 @@ def starting_torques(
     fractions: Sequence[float],
     scenes: Sequence[GearScene],
     seeds: int | None,
-    how: Execution,
+    execution: Execution,
 ) -> xr.Dataset:
     """Distribution of the starting torques over seeds, for `starting_torque`.
 
@@ -142,7 +142,7 @@ def starting_torques(
         Coverages, and the scene with each of them.
     seeds : int or None
         Number of gears, whose seeds count from ``contact.seed`` on; None for `SEEDS`.
-    how : Execution
+    execution : Execution
 
     Raises
     ------
@@ -152,14 +152,14 @@ def starting_torques(
     count = whole("seeds", SEEDS if seeds is None else seeds, 1, _MOST_SEEDS)
     numbers = range(base.contact.seed, base.contact.seed + count)
 
-    def work(kept: KeptRuns | None) -> xr.Dataset:
+    def work(kept: RunCache | None) -> xr.Dataset:
         designs = [_Design(scene, [laid(scene, seed) for seed in numbers]) for scene in scenes]
         usual = _STAGES * count * len(designs)
-        with how.side_by_side(kept, usual) as compute:
+        with execution.side_by_side(kept, usual) as compute:
             _find_all(designs, _Runs(compute))
         return _dataset(base, fractions, numbers, designs)
 
-    return GEARS.compute(how, base, work, [GEARS.kind, list(fractions), count])
+    return GEARS.compute(execution, base, work, [GEARS.kind, list(fractions), count])
 
 
 def _find_all(designs: Sequence[_Design], runs: _Runs) -> None:

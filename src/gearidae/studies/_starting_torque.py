@@ -17,7 +17,7 @@ from gearidae.archive.provenance import provenance
 from gearidae.archive.variables import SAM_FRACTION
 from gearidae.errors import SceneError
 from gearidae.runs.execution import Execution, RunOptions, prepared
-from gearidae.runs.kept_runs import KeptRuns
+from gearidae.runs.run_cache import RunCache
 from gearidae.runs.running import FAILS, failure_of, solve_to_end, unfinished, unsolved
 from gearidae.scene import require_gears
 from gearidae.scene.carried import numbers_of
@@ -163,11 +163,11 @@ def starting_torque(
     scene = _require(scene, impacts)
     if not 0.001 <= tolerance <= 1.0:
         raise SceneError("tolerance", tolerance, "must lie in 0.001..1")
-    base, how = prepared(scene, options)
+    base, execution = prepared(scene, options)
     if base.contact.is_discrete:
         _refuse_settings(impacts=impacts, lowest=lowest, simulated=simulated, tolerance=tolerance)
         return starting_torques(
-            base, *_coatings(base, "own" if sam_fraction is None else sam_fraction), seeds, how
+            base, *_coatings(base, "own" if sam_fraction is None else sam_fraction), seeds, execution
         )
     if seeds is not None:
         raise SceneError(
@@ -176,18 +176,20 @@ def starting_torque(
     fractions, scenes = _coatings(base, sam_fraction)
     least = _lowest(scene, lowest)
 
-    def work(kept: KeptRuns | None) -> xr.Dataset:
+    def work(kept: RunCache | None) -> xr.Dataset:
         static = [static_starting_torque(variant, impacts=impacts, lowest=least) for variant in scenes]
         searches = [
             _Search(variant, impacts, least, torque) for variant, torque in zip(scenes, static, strict=True)
         ]
         if simulated:
-            _search_all(searches, tolerance, how, kept)
+            _search_all(searches, tolerance, execution, kept)
         return _dataset(scene, fractions, searches, simulated=simulated).assign_attrs(
             impacts=impacts, tolerance=tolerance
         )
 
-    return STUDY.compute(how, base, work, [fractions, impacts, least, simulated, tolerance], origin=scene)
+    return STUDY.compute(
+        execution, base, work, [fractions, impacts, least, simulated, tolerance], origin=scene
+    )
 
 
 def _refuse_settings(**settings: Any) -> None:
@@ -267,11 +269,13 @@ class _Search:
         return (dry + turns, dry + sticks) if turns > 0.0 else (math.inf, dry + max(self.turned))
 
 
-def _search_all(searches: Sequence[_Search], tolerance: float, how: Execution, kept: KeptRuns | None) -> None:
+def _search_all(
+    searches: Sequence[_Search], tolerance: float, execution: Execution, kept: RunCache | None
+) -> None:
     """Narrow all brackets, the runs of each round side by side."""
     halvings = math.ceil(math.log2(math.log(STRIDE) / math.log1p(tolerance)))
     usual = len(searches) * (2 + max(halvings, 0))
-    with how.side_by_side(kept, usual, len(searches)) as compute:
+    with execution.side_by_side(kept, usual, len(searches)) as compute:
         while True:
             wanted = [(search, search.next_torque(tolerance)) for search in searches]
             todo = [(search, torque) for search, torque in wanted if torque is not None]

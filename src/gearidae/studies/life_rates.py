@@ -18,7 +18,7 @@ from gearidae import engine
 from gearidae.arrays import Floats
 from gearidae.errors import SolverError
 from gearidae.runs.execution import solutions
-from gearidae.runs.kept_runs import KeptRuns
+from gearidae.runs.run_cache import RunCache
 from gearidae.studies.cycle_jump import GearStuck
 from gearidae.studies.life_coverage import Coverage
 from gearidae.studies.life_window import (
@@ -58,7 +58,7 @@ class StateResult:
 
 
 @dataclass
-class Windows:
+class LifeSamples:
     """The windows so far, and where more of them are computed."""
 
     scene: GearScene
@@ -68,7 +68,7 @@ class Windows:
     starts: int
     backend: str
     executor: Executor | None = None
-    kept: KeptRuns | None = None
+    kept: RunCache | None = None
     report: Callable[[float, int], None] | None = None
     seen: dict[bytes, StateResult] = field(default_factory=dict)
     run: int = 0
@@ -103,14 +103,14 @@ class Windows:
                     advice="loosen the tolerance, or make windows longer (cycles, settle, starts)",
                 )
             self.seen[key] = self._run(inside)
-            self.say()
+            self.report_states()
         return self.seen[key]
 
     def scene_at(self, state: Floats) -> GearScene:
         """Return the scene of a window with the coverage of a state."""
         return self.scene.replace(self.coverage.changes(state))
 
-    def say(self) -> None:
+    def report_states(self) -> None:
         """Report the states so far."""
         if self.report is not None:
             self.report(float(len(self.seen)), MOST_STATES)
@@ -151,7 +151,7 @@ class DirectCycles:
 
     Attributes
     ----------
-    windows : Windows
+    samples : LifeSamples
         Of the same life.
     seen : dict of bytes to StateResult
         What the cycle of each state has shown.
@@ -159,7 +159,7 @@ class DirectCycles:
         Cycles so far, with those that the motion took to become steady.
     """
 
-    windows: Windows
+    samples: LifeSamples
     seen: dict[bytes, StateResult] = field(default_factory=dict)
     run: int = 0
     _here: _BetweenCycles | None = None
@@ -167,12 +167,12 @@ class DirectCycles:
     @property
     def cycle(self) -> float:
         """A mesh cycle in passages of each tooth."""
-        return 1.0 / self.windows.scene.gears.pinion_teeth
+        return 1.0 / self.samples.scene.gears.pinion_teeth
 
     @property
     def worth(self) -> float:
         """Passages below which a jump is not worth the cycles of its windows."""
-        return _EVALUATIONS * self.windows.cycles.total * self.cycle
+        return _EVALUATIONS * self.samples.cycles.total * self.cycle
 
     def follow(self, passages: float, state: Floats) -> Iterator[tuple[float, Floats]]:
         """Simulate cycle after cycle.
@@ -206,8 +206,8 @@ class DirectCycles:
 
     def _begin(self, passages: float, state: Floats) -> _BetweenCycles:
         """Bring the gears into steady motion at a coverage."""
-        windows = self.windows
-        window = steady_window(windows.scene_at(state), windows.cycles, windows.backend)
+        samples = self.samples
+        window = steady_window(samples.scene_at(state), samples.cycles, samples.backend)
         if window.start is None:
             raise GearStuck(passages)
         assert window.solution.extremes is not None
@@ -216,15 +216,15 @@ class DirectCycles:
 
     def _next(self, here: _BetweenCycles) -> _BetweenCycles:
         """Simulate a cycle."""
-        windows, state = self.windows, here.state
-        scene = part_of(windows.scene_at(state), 1, windows.cycles.total, _PATIENCE)
-        solution = solved(scene, windows.backend, here.start)
+        samples, state = self.samples, here.state
+        scene = part_of(samples.scene_at(state), 1, samples.cycles.total, _PATIENCE)
+        solution = solved(scene, samples.backend, here.start)
         if stands(solution, scene) or solution.checkpoint is None:
             raise GearStuck(here.passages + self.cycle)
         seen = self._see(scene, solution, here)
         self.seen[state.tobytes()] = seen
         self.run += 1
-        windows.say()
+        samples.report_states()
         after = np.clip(state + seen.rate * self.cycle, 0.0, 1.0)
         start = engine.end_of(scene, solution.checkpoint, here.start.time)
         return _BetweenCycles(here.passages + self.cycle, after, start, solution, here.passages, state)
@@ -235,10 +235,10 @@ class DirectCycles:
         assert here.start.scene is not None
         same = scene.coating == here.start.scene.coating
         exposures = gained(solution, here.run if same else None, scene)
-        exposure = self.windows.coverage.exposure(scene, with_exposures(solution, exposures), 1, here.state)
+        exposure = self.samples.coverage.exposure(scene, with_exposures(solution, exposures), 1, here.state)
         assert solution.reached is not None
         speed = 2.0 * math.pi / (scene.gears.gear_teeth * (solution.reached - here.start.time))
-        rate = self.windows.law.rate(here.state, exposure)
+        rate = self.samples.law.rate(here.state, exposure)
         return StateResult(False, rate, (exposure,), speed, solution.extremes.min_gear_speed)
 
 

@@ -17,7 +17,7 @@ from gearidae.archive.select import runs
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.runs.execution import Execution
-from gearidae.runs.kept_runs import KeptRuns
+from gearidae.runs.run_cache import RunCache
 from gearidae.runs.sweep_plan import SweepPlan
 from gearidae.runs.sweeping import run_plan
 from gearidae.scene.keys import scene_value
@@ -45,12 +45,12 @@ class Predictor:
     keys : tuple of str
         Whose values are computed.
     observations : tuple of Observation
-    how : Execution
+    execution : Execution
         Where the runs are computed; with an archive, they are kept beside it.
     """
 
     def __init__(
-        self, base: Scene, keys: tuple[str, ...], observations: tuple[Observation, ...], how: Execution
+        self, base: Scene, keys: tuple[str, ...], observations: tuple[Observation, ...], execution: Execution
     ) -> None:
         self._sampled = any(observation.of == RING for observation in observations)
         self._varied = tuple(
@@ -60,14 +60,14 @@ class Predictor:
         if self._sampled and fixed:
             raise SceneError("conditions", fixed[0], f"cannot differ beside {RING}: runs share one time axis")
         self._base = base if self._sampled else base.replace({"run.samples": "off"})
-        self._keys, self._observations, self._how = keys, observations, how
+        self._keys, self._observations, self._execution = keys, observations, execution
         self._keep = read_keep(_SAMPLED if self._sampled else ("extremes",), self._base)
-        self.kept: KeptRuns | None = None
+        self.kept: RunCache | None = None
         """Where finished runs are."""
 
-    def store(self, archive: Path) -> KeptRuns:
+    def store(self, archive: Path) -> RunCache:
         """Make the folder of finished runs beside an archive."""
-        return KeptRuns(archive, self._base, self._how.driver, self._keep)
+        return RunCache(archive, self._base, self._execution.driver, self._keep)
 
     def figures(self, values: Floats, progress: bool | SweepProgress = False) -> Floats:
         """Predict all observations.
@@ -119,8 +119,10 @@ class Predictor:
             part = list(scenes[first : first + size])
             axis: dict[str, list[Any]] = {"name": [f"run {first + number}" for number in range(len(part))]}
             axis |= {key: [scene_value(scene, key) for scene in part] for key in self._varied}
-            how = replace(self._how, progress=progress)
-            read += self._read(run_plan(SweepPlan(self._base, (axis,), part), how, self.kept, self._keep))
+            execution = replace(self._execution, progress=progress)
+            read += self._read(
+                run_plan(SweepPlan(self._base, (axis,), part), execution, self.kept, self._keep)
+            )
         return read
 
     def _read(self, ds: xr.Dataset) -> list[dict[str, float]]:

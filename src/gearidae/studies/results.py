@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from gearidae.archive.rows import LABELS, kinds_in, own_rows
-from gearidae.archive.run_summary import Account, account
+from gearidae.archive.run_summary import RunSummary, summary_of
 from gearidae.archive.select import is_roller, run_scene, runs, scene_of, single_run, swept_dims
 from gearidae.archive.tables import LARGEST_TABLE, row_table, run_labels, time_series
 from gearidae.archive.totals import energy_balance
@@ -93,10 +93,10 @@ class Results:
         return Scene.from_dict(scene_of(self._ds))
 
     @property
-    def account(self) -> Account | None:
+    def account(self) -> RunSummary | None:
         """Run summary of a single run; None for a roller, several runs, or without samples and events."""
         several = any(self._ds.sizes[dim] != 1 for dim in swept_dims(self._ds))
-        return None if several else account(single_run(self._ds))
+        return None if several else summary_of(single_run(self._ds))
 
     @property
     def energy_balance(self) -> dict[str, float] | None:

@@ -15,13 +15,13 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import xarray as xr
 
-from gearidae.archive.keep import EVERYTHING, Keep
+from gearidae.archive.keep import EVERYTHING, OutputSelection
 from gearidae.archive.library import loaded
 from gearidae.errors import SceneError
 
 if TYPE_CHECKING:
     from gearidae.runs.execution import Execution
-    from gearidae.runs.kept_runs import KeptRuns
+    from gearidae.runs.run_cache import RunCache
     from gearidae.scene import Scene
 
 _HEADERS = (b"\x89HDF\r\n\x1a\n", b"CDF")
@@ -264,13 +264,13 @@ class Study:
 
     def compute(
         self,
-        how: Execution,
+        execution: Execution,
         base: Scene,
-        work: Callable[[KeptRuns | None], xr.Dataset],
+        work: Callable[[RunCache | None], xr.Dataset],
         settings: object,
         *,
         origin: Scene | None = None,
-        keep: Keep = EVERYTHING,
+        keep: OutputSelection = EVERYTHING,
         **more: Any,
     ) -> xr.Dataset:
         """Compute the dataset by `work`, whose runs are kept beside the archive until it is written.
@@ -283,16 +283,16 @@ class Study:
             What the result depends on besides the scene, ready for JSON.
         origin : Scene, optional
             The scene that the question was about; by default `base`.
-        keep : Keep, optional
+        keep : OutputSelection, optional
             What each run leaves behind.
         **more
             As for `gearidae.runs.execution.run_kept`, whose errors these are too.
         """
         from gearidae.runs.execution import origin_of, run_kept
-        from gearidae.runs.kept_runs import KeptRuns
+        from gearidae.runs.run_cache import RunCache
 
-        def store(target: Path) -> KeptRuns:
-            return KeptRuns(target, base, how.driver, keep)
+        def store(target: Path) -> RunCache:
+            return RunCache(target, base, execution.driver, keep)
 
         about = {**origin_of(base if origin is None else origin), "settings": json.dumps(settings)}
-        return run_kept(how, store, work, about, read=self.open, **more)
+        return run_kept(execution, store, work, about, read=self.open, **more)

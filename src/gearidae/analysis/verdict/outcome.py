@@ -18,7 +18,7 @@ from gearidae.analysis.verdict.table import Outcomes, Shown
 from gearidae.archive.pieces import count, pieces
 from gearidae.archive.select import is_roller, refuse_other_labels, run_value, runs, scene_of, swept_dims
 from gearidae.archive.tables import run_labels
-from gearidae.archive.totals import doubt, extremes_of, imbalance, imbalance_of
+from gearidae.archive.totals import extremes_of, imbalance, imbalance_of, imbalance_words
 from gearidae.errors import SceneError
 from gearidae.records import RUN_PARTS, EventKind, Extremes
 from gearidae.records.standing import Holding
@@ -107,8 +107,8 @@ class GearOutcome(Shown):
 
     @property
     def words(self) -> str:
-        """The verdict in words, with its window, and a doubt where the energy balance does not close."""
-        return self._verdict_in_words + (OLD if self.old else "") + doubt(self.imbalance)
+        """The verdict in words, with its window, and a warning where the energy balance does not close."""
+        return self._verdict_in_words + (OLD if self.old else "") + imbalance_words(self.imbalance)
 
     @property
     def _window(self) -> str:
@@ -203,9 +203,9 @@ class RollerOutcome(Shown):
 
     @property
     def words(self) -> str:
-        """The verdict in words, with a doubt where the energy balance does not close."""
+        """The verdict in words, with a warning where the energy balance does not close."""
         words = f"not followed to its end ({self.status})" if self.verdict == "unfinished" else self.verdict
-        return words + doubt(self.imbalance)
+        return words + imbalance_words(self.imbalance)
 
 
 def outcomes(ds: xr.Dataset) -> list[GearOutcome | RollerOutcome]:

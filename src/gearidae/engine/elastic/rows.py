@@ -2,7 +2,7 @@
 
 Among the rows that change lie, pair by pair, gap, share, pressure, slope and deflections of every node, then joined
 heights, stiffness and adhered energy of every point. Constants (profile, weights, influence coefficients, the points'
-shares of the nodes) lie among the tables. Functions here hand out views of them, with their true lengths.
+shares of the nodes) lie among the tables. Functions here return views of them, with their true lengths.
 """
 
 from __future__ import annotations

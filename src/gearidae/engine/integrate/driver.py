@@ -104,7 +104,7 @@ class SampleReader(Protocol):
 
 
 class Output(NamedTuple):
-    """Samples, events and passages of a block, before it is handed out.
+    """Samples, events and passages of a block, before it is yielded.
 
     Attributes
     ----------

@@ -31,7 +31,7 @@ from gearidae.engine.pairs.tooth_pairs import flank_of_history, in_flight, list_
 
 @compiled
 def has_room(events: int, passages: int, out: Output) -> bool:
-    """Whether all that happens at one more accepted time finds room in the block: else it is handed out first."""
+    """Whether all that happens at one more accepted time finds room in the block; else the block is yielded first."""
     room = out.events.shape[0] - EVENTS_AT_ONCE, out.passages.shape[0] - PASSAGES_AT_ONCE
     return bool(events <= room[0] and passages <= room[1])
 

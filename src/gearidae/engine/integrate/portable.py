@@ -128,7 +128,7 @@ def run(
 
 
 def _ready(problem: Problem, m: Model, out: Output, statistics: Statistics, y: Floats, yp: Floats) -> Block:
-    """Hand out a block with a checkpoint."""
+    """Yield a block with a checkpoint."""
     update_statistics(statistics, m.state.progress)
     reached = float(m.work.driver.time)
     return out.block(m, reached, problem.checkpoint(reached, y), problem.kept(reached, y, yp))
@@ -137,7 +137,7 @@ def _ready(problem: Problem, m: Model, out: Output, statistics: Statistics, y: F
 def _samples(
     problem: Problem, solver: _Solver, out: Output, y: Floats, reader: SampleReader | None
 ) -> Iterator[Block]:
-    """Write the samples up to the time reached; hands out full blocks on the way."""
+    """Write the samples up to the time reached; yields full blocks on the way."""
     m, trail = solver.m, solver.trail
     driver, progress = m.work.driver, m.state.progress
     while (due := sample_time(m, int(progress.next_sample))) <= driver.time:
@@ -202,7 +202,7 @@ class _Solver:
     def _make(self, n: int, step: float) -> None:
         m, place = self.m, self.located.place
         column_major = np.empty(n * n)
-        # what scikit-sundae hands out is read-only, which is another type to numba
+        # what scikit-sundae passes is read-only, which is another type to numba
         state, rates = np.empty(n), np.empty(n)
         blocks = np.empty(store_size(m) if m.scene.nodes > 0 else 0)
 

@@ -35,7 +35,7 @@ from gearidae.studies.study import Call, Option, Picture, Rows, Study
 
 if TYPE_CHECKING:
     from gearidae.progress import SweepProgress
-    from gearidae.runs.kept_runs import KeptRuns
+    from gearidae.runs.run_cache import RunCache
     from gearidae.scene import Scene
 
 log = logging.getLogger(__name__)
@@ -112,14 +112,14 @@ def calibrate(
     """
     from gearidae.studies.predicting import Predictor
 
-    base, how = prepared(scene, options)
+    base, execution = prepared(scene, options)
     distributions = read_distributions(base, priors)
     keys = tuple(distribution.key for distribution in distributions)
     chosen = _check(method, len(keys), points, steps, seed)
     seen = _checked(observations, base, keys)
     settings = {"method": chosen, "points": points, "steps": steps, "seed": seed}
     about = _attributes(base, distributions, seen, settings)
-    predictor = Predictor(base, keys, seen, how)
+    predictor = Predictor(base, keys, seen, execution)
 
     def likelihood(values: Floats, shown: bool | SweepProgress = False) -> Floats:
         figures = predictor.figures(values, shown)
@@ -131,13 +131,15 @@ def calibrate(
 
     names = list(dimension_names(keys).values())
 
-    def work(kept: KeptRuns | None) -> xr.Dataset:
+    def work(kept: RunCache | None) -> xr.Dataset:
         predictor.kept = kept
         if chosen == "grid":
-            ds = grid_posterior(distributions, names, points, lambda values: likelihood(values, how.progress))
+            ds = grid_posterior(
+                distributions, names, points, lambda values: likelihood(values, execution.progress)
+            )
             _doubt(ds["weight"], dict(zip(names, keys, strict=True)))
         else:
-            with sweep_progress(how.progress, steps) as report:
+            with sweep_progress(execution.progress, steps) as report:
                 allowed = _where_allowed(base, keys, likelihood)
                 ds = sampled_posterior(distributions, names, steps, seed, allowed, report)
         for key, name in zip(keys, names, strict=True):
@@ -146,7 +148,7 @@ def calibrate(
         return ds.assign_attrs(about)
 
     depends = {name: about[name] for name in ("scene", "source", "calibration")}
-    return run_kept(how, predictor.store, work, depends, read=open_posterior)
+    return run_kept(execution, predictor.store, work, depends, read=open_posterior)
 
 
 def _doubt(weight: xr.DataArray, keys: Mapping[Any, str]) -> None:

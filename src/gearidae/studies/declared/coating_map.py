@@ -34,7 +34,7 @@ from gearidae.studies.announcement import grid_words
 from gearidae.studies.study import Call, Column, Option, Picture, Rows, Study
 
 if TYPE_CHECKING:
-    from gearidae.runs.kept_runs import KeptRuns
+    from gearidae.runs.run_cache import RunCache
     from gearidae.scene import Scene
 
 FRACTIONS = np.round(np.linspace(1.0, 0.5, 51), 4)
@@ -110,18 +110,18 @@ def coating_map(
     fractions = _fractions(sam_fraction)
     width = check_width(width)
     keys = further_keys(scene, over)
-    how = Execution(**options, method=scene.run.method)
-    plans = _plans(scene, fractions, keys, how.backend)
+    execution = Execution(**options, method=scene.run.method)
+    plans = _plans(scene, fractions, keys, execution.backend)
     numbers = {key: [_number(scene, key, value) for value in listed] for key, listed in keys.items()}
 
-    def work(kept: KeptRuns | None) -> xr.Dataset:
+    def work(kept: RunCache | None) -> xr.Dataset:
         # one line at a time: what is kept of a run is a few numbers of some megabytes
-        lines = [_line(run_plan(plan, how, kept), width) for plan in plans]
+        lines = [_line(run_plan(plan, execution, kept), width) for plan in plans]
         return _assembled(lines, numbers).assign_attrs(_attributes(scene, (_FRACTION, *keys), lines[0].attrs))
 
     scenes = [run for plan in plans for run in plan.scenes]
     settings = {_FRACTION: fractions, **numbers, "width": width}
-    return STUDY.compute(how, plans[0].base, work, settings, origin=scene, scenes=scenes)
+    return STUDY.compute(execution, plans[0].base, work, settings, origin=scene, scenes=scenes)
 
 
 def _plans(

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final, Unpack
 import numpy as np
 import xarray as xr
 
-from gearidae.archive.keep import Keep, read_keep
+from gearidae.archive.keep import OutputSelection, read_keep
 from gearidae.archive.provenance import provenance
 from gearidae.archive.variables import by_name
 from gearidae.arrays import Floats
@@ -98,7 +98,7 @@ def convergence(
     >>> scene = gd.preset("teodorescu2009_low_speed")
     >>> found = gd.studies.convergence(scene, of=["adhesion_loss", "stick_time"])  # doctest: +SKIP
     """
-    base, how = prepared(scene, options, samples=2)
+    base, execution = prepared(scene, options, samples=2)
     names = list((_OF_GEARS if base.roller is None else _OF_ROLLERS) if of is None else of)
     keep = _keep(base, names)
     ladder = _ladder(rtols)
@@ -107,14 +107,14 @@ def convergence(
     plan = _plan(base, ladder)
 
     def work(kept: Any) -> xr.Dataset:
-        runs = run_plan(plan, how, kept, keep)
+        runs = run_plan(plan, execution, kept, keep)
         return _dataset(scene, runs, names, ladder, target)
 
     settings = [names, ladder.tolist(), target]
-    return STUDY.compute(how, base, work, settings, origin=scene, keep=keep, scenes=plan.scenes)
+    return STUDY.compute(execution, base, work, settings, origin=scene, keep=keep, scenes=plan.scenes)
 
 
-def _keep(base: Scene, names: list[str]) -> Keep:
+def _keep(base: Scene, names: list[str]) -> OutputSelection:
     """Keep of each run what the quantities need; refuse what is none."""
     try:
         keep = read_keep([*names, "steps"], base)

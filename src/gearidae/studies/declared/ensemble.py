@@ -123,7 +123,7 @@ def ensemble(
     >>> ds = gd.studies.ensemble(scene, vary, 128, of="min_gear_speed")  # doctest: +SKIP
     >>> ds.total_order.sel(parameter="drive.torque")  # doctest: +SKIP
     """
-    base, how = prepared(scene, options, samples="off")
+    base, execution = prepared(scene, options, samples="off")
     check_design(size, design, seed, indices=of is not None)
     _check_figure(base, of)
     varied = without_seeds(base, vary)
@@ -149,7 +149,7 @@ def ensemble(
         return ds.assign_attrs(_titles(base, words, len(plan.scenes)))
 
     keep = read_keep(("extremes", "energy_balance") if seeded else ("extremes",), base)
-    return run_study(plan, how, {"ensemble": json.dumps(about)}, finish, keep=keep)
+    return run_study(plan, execution, {"ensemble": json.dumps(about)}, finish, keep=keep)
 
 
 def figure_names(scene: Scene) -> tuple[str, ...]:

@@ -91,7 +91,7 @@ def operating_map(
     >>> chart = gd.studies.operating_map(scene, over)  # doctest: +SKIP
     >>> ax = gd.plot.outcome_map(chart)  # doctest: +SKIP
     """
-    base, how = prepared(scene, options, samples="off")
+    base, execution = prepared(scene, options, samples="off")
     require_gears(base)
     if not isinstance(over, Mapping) or len(over) != 2:
         allowed = 'must be two keys and their values, {"drive.torque": [...], "coating.sam_fraction": [...]}'
@@ -106,7 +106,7 @@ def operating_map(
             summary=f"What the gears do over {' and '.join(over)}: turn, cross the backlash, or stick.",
         )
 
-    return run_study(plan, how, {"study": "operating_map"}, finish)
+    return run_study(plan, execution, {"study": "operating_map"}, finish)
 
 
 def _judged(ds: xr.Dataset) -> xr.Dataset:

@@ -65,7 +65,7 @@ def predict(
         On Ctrl-C, with the runs so far as its ``dataset``.
     """
     check_design(size, "random", seed, indices=False)
-    base, how = prepared(scene, options, samples="off")
+    base, execution = prepared(scene, options, samples="off")
     values = posterior_draws(posterior, size, seed)
     source = dict.fromkeys(values, "the posterior")
     plan = member_plan(base, values, source)
@@ -77,7 +77,7 @@ def predict(
             summary=f"Verdicts and figures of {size} runs with {', '.join(values)} drawn from their posterior.",
         )
 
-    return run_study(plan, how, {"ensemble": json.dumps(about)}, finish)
+    return run_study(plan, execution, {"ensemble": json.dumps(about)}, finish)
 
 
 def posterior_draws(posterior: xr.Dataset, size: int, seed: int = 0) -> dict[str, NDArray[np.float64]]:

@@ -23,7 +23,7 @@ from gearidae.studies.study import Call, Column, Option, Picture, Rows, Study
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from gearidae.runs.kept_runs import KeptRuns
+    from gearidae.runs.run_cache import RunCache
     from gearidae.studies.drawn_contact import PullOff
 
 _MOST: Final = 1_000_000
@@ -78,19 +78,22 @@ def pull_off(
     20
     """
     numbers, force = _seeds(scene, seeds), _load(scene, load)
-    how = Execution(**options)
+    execution = Execution(**options)
     pieces = [numbers[first : first + _PIECE] for first in range(0, len(numbers), _PIECE)]
 
-    def work(_: KeptRuns | None) -> xr.Dataset:
+    def work(_: RunCache | None) -> xr.Dataset:
         results: list[PullOff] = []
-        with sweep_progress(how.progress, len(numbers)) as report, how.computing(len(pieces)) as computing:
+        with (
+            sweep_progress(execution.progress, len(numbers)) as report,
+            execution.computing(len(pieces)) as computing,
+        ):
             count = len(pieces)
             for part in side_by_side(computing, _part, [scene] * count, pieces, [force] * count):
                 results += part
                 report(float(len(results)), len(numbers))
         return _dataset(scene, numbers, force, results)
 
-    return STUDY.compute(how, scene, work, [numbers, force])
+    return STUDY.compute(execution, scene, work, [numbers, force])
 
 
 def _part(scene: Scene, seeds: Sequence[int], load: float) -> list[PullOff]:

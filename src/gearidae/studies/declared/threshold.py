@@ -18,7 +18,7 @@ from gearidae.analysis.verdict.judge import is_scheduled
 from gearidae.archive.provenance import provenance
 from gearidae.errors import SceneError
 from gearidae.runs.execution import RunOptions, SideBySide, prepared
-from gearidae.runs.kept_runs import KeptRuns
+from gearidae.runs.run_cache import RunCache
 from gearidae.runs.sweep_plan import values_of
 from gearidae.scene import require_gears
 from gearidae.scene.keys import find_key
@@ -105,7 +105,7 @@ def sticking_threshold(
     """
     scene = require_gears(scene)
     ends = _ends(scene, over, between)
-    base, how = prepared(scene, options, samples="off")
+    base, execution = prepared(scene, options, samples="off")
     width = abs(ends[1] - ends[0]) * _WIDTH if width is None else width
     _check(exits, width)
     if not is_scheduled(base.to_dict()):  # a schedule has a time of its own
@@ -118,12 +118,12 @@ def sticking_threshold(
     def so_far() -> xr.Dataset:
         return _dataset(scene, over, runs, waits, ends, width)
 
-    def work(kept: KeptRuns | None) -> xr.Dataset:
-        with how.side_by_side(kept, most) as compute:
+    def work(kept: RunCache | None) -> xr.Dataset:
+        with execution.side_by_side(kept, most) as compute:
             _search(_Pool(base, over, exits, compute, runs), ends, waits, width)
         return so_far()
 
-    return STUDY.compute(how, base, work, [over, *ends, exits, width], origin=scene, so_far=so_far)
+    return STUDY.compute(execution, base, work, [over, *ends, exits, width], origin=scene, so_far=so_far)
 
 
 @dataclass

@@ -19,7 +19,7 @@ contacts, and of sliding work, in proportion to the way. Contacts on the tip rel
 
 Asperities of a population are counted one by one, each at its own place (`contacts.add_flips`); sliding
 work and pressure are those of the whole pair, where it touches. The work of friction is a fifth sum, of flanks that
-have friction (the module `rubbing` of this room).
+have friction (module `rubbing` of this package).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""How the rooms of the package hang together: who imports whom, read from the sources and never run."""
+"""Dependencies of the packages: who imports whom, read from the sources and never run."""
 
 import ast
 from graphlib import CycleError, TopologicalSorter
@@ -27,20 +27,20 @@ def imported(path, package):
 
 
 def arrows(folder, package):
-    """Rooms of a package, each with the rooms that it imports; a room is a folder, or a module beside the folders."""
-    rooms = {
+    """Packages within a package, each with those that it imports: folders, and modules beside the folders."""
+    packages = {
         path.stem for path in folder.iterdir() if (path / "__init__.py").exists() or path.suffix == ".py"
     }
-    imports = {room: set() for room in rooms - {"__init__"}}
+    imports = {name: set() for name in packages - {"__init__"}}
     for path in folder.rglob("*.py"):
-        room = path.relative_to(folder).parts[0].removesuffix(".py")
-        if room != "__init__":  # the door, which shows names of upper rooms
+        name = path.relative_to(folder).parts[0].removesuffix(".py")
+        if name != "__init__":  # the public API, which shows names of upper packages
             others = {name.partition(".")[0] for name in imported(path, package)}
-            imports[room] |= (others & rooms) - {room, "__init__"}
+            imports[name] |= (others & packages) - {name, "__init__"}
     return imports
 
 
-def test_no_arrow_between_rooms_of_the_engine_runs_back():
+def test_no_arrow_between_packages_of_the_engine_runs_back():
     imports = arrows(SOURCE / "engine", "gearidae.engine")
     both_ways = sorted(
         {
@@ -55,7 +55,7 @@ def test_no_arrow_between_rooms_of_the_engine_runs_back():
     assert order.index("model") < order.index("motion") < order.index("setup") < order.index("integrate")
 
 
-def test_no_two_rooms_of_the_package_import_each_other():
+def test_no_two_packages_import_each_other():
     imports = arrows(SOURCE, "gearidae")
     assert [
         (package, imported_package)
@@ -66,14 +66,14 @@ def test_no_two_rooms_of_the_package_import_each_other():
 
 
 def test_a_circle_would_be_found(tmp_path):
-    """Also one over three rooms, and one through an import inside a function."""
-    for room, text in (
+    """Also one over three packages, and one through an import inside a function."""
+    for name, text in (
         ("a", "import p.b.x"),
         ("b", "def f():\n    from p.c import y"),
         ("c", "from p.a import z"),
     ):
-        (tmp_path / room).mkdir()
-        (tmp_path / room / "__init__.py").write_text(text)
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "__init__.py").write_text(text)
     assert arrows(tmp_path, "p") == {"a": {"b"}, "b": {"c"}, "c": {"a"}}
     with pytest.raises(CycleError):
         TopologicalSorter(arrows(tmp_path, "p")).prepare()

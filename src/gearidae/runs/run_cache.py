@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.archive.keep import EVERYTHING, Keep
+from gearidae.archive.keep import EVERYTHING, OutputSelection
 from gearidae.archive.provenance import SCHEMA_VERSION, provenance
 from gearidae.archive.store import Store
 from gearidae.archive.variables import VERDICT
@@ -66,7 +66,7 @@ def name_of(scene: Scene, about: Mapping[str, Any]) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-class KeptRuns:
+class RunCache:
     """The finished runs of one sweep, in the `Store` beside its archive.
 
     Each is an entry under the hash of all that its result depends on: the scene (with its duration, samples and
@@ -81,11 +81,11 @@ class KeptRuns:
         Any scene of the sweep.
     backend : str
         The driver that runs, ``native`` or ``sksundae``.
-    keep : Keep, optional
+    keep : OutputSelection, optional
         What each run leaves behind; by default everything.
     """
 
-    def __init__(self, archive: Path, scene: Scene, backend: str, keep: Keep = EVERYTHING) -> None:
+    def __init__(self, archive: Path, scene: Scene, backend: str, keep: OutputSelection = EVERYTHING) -> None:
         self._store = Store(archive)
         self.folder = self._store.folder
         self._circumstances = {
