@@ -15,14 +15,14 @@ from numpy.typing import NDArray
 from gearidae.engine.events.events import guard
 from gearidae.engine.events.record import EVENT_NUMBERS
 from gearidae.engine.events.stops import next_stop
-from gearidae.engine.followers.passages import PASSAGE_NUMBERS
 from gearidae.engine.formulas import adams
+from gearidae.engine.integrate.accepted_step import finish_step, has_room, prepare_restart
 from gearidae.engine.integrate.driver import BLOCK_EVENTS, BLOCK_PASSAGES, Output
-from gearidae.engine.integrate.epilogue import finish_step, has_room, prepare_restart
 from gearidae.engine.integrate.native import restart, state_for_sample
 from gearidae.engine.integrate.root_finding import Stepper, state_at
-from gearidae.engine.model.located import POINTERS, model_at
+from gearidae.engine.model.addresses import POINTERS, model_at
 from gearidae.engine.motion.observe import observe
+from gearidae.engine.observers.passages import PASSAGE_NUMBERS
 from gearidae.engine.sundials.ida_memory import HANDLES
 from gearidae.engine.sundials.memory import words
 from gearidae_bench.compiling import compiled_callback

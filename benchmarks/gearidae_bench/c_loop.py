@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from gearidae.engine.integrate.driver import CONVERGENCE_FAILURES_HIGH
 from gearidae.engine.integrate.root_finding import SHARPNESS
-from gearidae.engine.model.located import POINTERS, note_addresses
+from gearidae.engine.model.addresses import POINTERS, note_addresses
 from gearidae.engine.motion.observe import observe
 from gearidae.engine.setup.problem import Problem
 from gearidae.engine.sundials.names import newton_places, places
@@ -97,7 +97,7 @@ def _run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
     observe(m, 0.0, y, rows[0])
     where = opened.Places(places(), newton_places())
     try:
-        of_ours = problem.located.place, callbacks(n, False), where, (y, yp, dky)
+        of_ours = problem.addresses.place, callbacks(n, False), where, (y, yp, dky)
         if opened.open_solver(handles, *of_ours, CONVERGENCE_FAILURES_HIGH) != 0:
             return BROKEN
         flag = _library().gearidae_loop(

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.engine.events.asperity_events import first_dip, note_step_start
+from gearidae.engine.events.asperity_events import first_grazing_minimum, note_step_start
 from gearidae.engine.events.events import guard
 from gearidae.engine.model.state import MATERIALS, Model
 from gearidae.engine.pairs.tooth_pairs import gap_and_rate, history_of, pair_at, pairs_near
@@ -90,4 +90,4 @@ def dip_in_step(m: Model, new: Floats, h: float, before: float, after: float) ->
     """Share of a step at which an asperity dips below its guard, which is above zero at both ends; -1 if none does."""
     if m.scene.population.flanks == 0 or before <= 0.0 or after <= 0.0:
         return -1.0
-    return first_dip(m, new, h)
+    return first_grazing_minimum(m, new, h)

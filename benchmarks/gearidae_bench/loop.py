@@ -15,9 +15,9 @@ from gearidae.engine.events.events import guard
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.record import EVENT_NUMBERS, EVENTS_AT_ONCE
 from gearidae.engine.events.stops import next_stop
-from gearidae.engine.followers.balance import note_changes
 from gearidae.engine.model.record_types import AT_REST, HELD_GEAR
 from gearidae.engine.model.state import MATERIALS, Model
+from gearidae.engine.observers.balance import note_changes
 from gearidae_bench.compiling import compiled
 from gearidae_bench.kinks import arm, begin_step, dip_in_step, watch
 from gearidae_bench.roots import (

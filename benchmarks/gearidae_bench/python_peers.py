@@ -17,9 +17,9 @@ from sksundae.ida import IDA
 
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.record import EVENT_NUMBERS, EVENTS_AT_ONCE
-from gearidae.engine.integrate.by_address import guard_at, jacobian_at, residual_at
+from gearidae.engine.integrate.entry_points import guard_at, jacobian_at, residual_at
 from gearidae.engine.integrate.start import set_rates
-from gearidae.engine.model.located import Located, model_at
+from gearidae.engine.model.addresses import Addresses, model_at
 from gearidae.engine.model.state import GEARS, V, W
 from gearidae.engine.motion.residual import jacobian
 from gearidae.engine.setup.problem import Problem
@@ -80,8 +80,8 @@ def _arrive(place: int, t: float, y: Floats, room: Floats) -> int:
 class _Events:
     """Follows histories and events behind a solver that knows nothing of them."""
 
-    def __init__(self, located: Located, start: Floats) -> None:
-        self._located, self._place = located, located.place
+    def __init__(self, addresses: Addresses, start: Floats) -> None:
+        self._addresses, self._place = addresses, addresses.place
         self._room = np.empty((EVENTS_AT_ONCE, EVENT_NUMBERS))
         self._before = guard_at(self._place, 0.0, start)
         self.failed = False
@@ -126,8 +126,8 @@ class _Events:
 
 def _scipy(method: Any, implicit: bool) -> Callable[[Problem, float, Floats], Outcome]:
     def run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
-        located = Located(alone(problem).model)
-        place = located.place
+        addresses = Addresses(alone(problem).model)
+        place = addresses.place
 
         def fun(t: float, y: Floats) -> Floats:
             return _slope(place, t, y)
@@ -139,7 +139,7 @@ def _scipy(method: Any, implicit: bool) -> Callable[[Problem, float, Floats], Ou
         if implicit:
             options["jac"] = jac
         solver = method(fun, 0.0, problem.start, end_of(problem), **options)
-        events = _Events(located, problem.start)
+        events = _Events(addresses, problem.start)
         states = np.empty((times.size, problem.start.size))
         sample, steps = 0, 0
         while solver.status == "running":
@@ -171,8 +171,8 @@ def _sundials(
     make: Callable[[Problem, int, float, Any], Any], names: tuple[str, ...]
 ) -> Callable[..., Outcome]:
     def run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
-        located, end = Located(alone(problem).model), end_of(problem)
-        place = located.place
+        addresses, end = Addresses(alone(problem).model), end_of(problem)
+        place = addresses.place
 
         def eventsfn(t: float, y: Floats, *rest: Floats) -> None:
             rest[-1][0] = guard_at(place, t, y.copy())  # what scikit-sundae passes is read-only
@@ -184,7 +184,7 @@ def _sundials(
         )
         watch.direction = [-1]
         solver = make(problem, place, tolerance, watch)
-        events = _Events(located, problem.start)
+        events = _Events(addresses, problem.start)
         states = np.empty((times.size, problem.start.size))
         states[0] = problem.start
         sample, steps, t = 1, 0, 0.0

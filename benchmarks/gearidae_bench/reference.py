@@ -191,7 +191,7 @@ def end_of(problem: Problem) -> float:
 
 
 def alone(problem: Problem, *kept: str) -> Problem:
-    """Let a problem be run without followers, like a peer that has none, but for those of the names `kept`."""
+    """Let a problem be run without observers, like a peer that has none, but for those of the names `kept`."""
     followed = problem.model.scene.follow
     for name in followed.dtype.names:
         if name not in kept:

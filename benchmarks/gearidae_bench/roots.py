@@ -11,10 +11,10 @@ from gearidae.engine.events.events import guard
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.sliding import follow_sliding
 from gearidae.engine.events.stops import next_stop, pass_knot
-from gearidae.engine.followers import joining
+from gearidae.engine.integrate.accepted_step import handle
 from gearidae.engine.integrate.driver import Output
-from gearidae.engine.integrate.epilogue import handle
 from gearidae.engine.model.state import GEARS, Model, W
+from gearidae.engine.observers import adhesion_loss
 from gearidae_bench.compiling import compiled
 from gearidae_bench.kinks import watch
 from gearidae_bench.steps import dop853_value, gauss_step, hermite_value, rates
@@ -159,7 +159,7 @@ def reach(m: Model, t: float, y: Floats, slopes: Floats) -> None:
     accept(m, t, y)
     if m.scene.follow.balance != 0 and m.scene.kind == GEARS:
         m.work.quadrature.gear_acceleration = slopes[W]
-        joining.step(m, t, y, slopes[W])
+        adhesion_loss.step(m, t, y, slopes[W])
 
 
 @compiled()

@@ -126,7 +126,7 @@ def _energy_unit(problem: Problem) -> float:
 
 
 def _engine(method: str, *kept: str) -> Runner:
-    """Run with the native driver and the followers of the names `kept`."""
+    """Run with the native driver and the observers of the names `kept`."""
 
     def run(problem: Problem, tolerance: float) -> Reached:
         problem = alone(replace(problem, method=method), *kept)
@@ -172,7 +172,7 @@ def _explicit(method: str, *kept: str) -> Runner:
 
 
 ALL_RUNS: Final = ("balance", "extremes", "passages")
-"""Followers of a run as users have it."""
+"""Observers of a run as users have it."""
 _LADDER: Final = TOLERANCES[:6]
 _STEPS: Final = (2.0 * STEP_LENGTHS[0], 1.5 * STEP_LENGTHS[0], *STEP_LENGTHS[:3])
 """At the first, runs at full speed break off, and slow ones do not."""

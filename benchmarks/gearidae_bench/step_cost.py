@@ -61,12 +61,12 @@ PARTS: Final = (
     Part("states at roots", "integrate.root_finding", "state_at", ""),
     Part("samples", "integrate.native", "_sample", ""),
     Part(_EVENTS, "integrate.native", "finish_step", ""),
-    Part("histories", "integrate.epilogue", "accept", _EVENTS),
-    Part("events", "integrate.epilogue", "handle", _EVENTS),
-    Part("energy balance: adhesion", "followers.in_turn.joining", "step", _EVENTS),
-    Part("energy balance: works and losses", "followers.in_turn.balance", "step", _EVENTS),
-    Part("extremes", "followers.in_turn.extremes", "step", _EVENTS),
-    Part("choice of formulas", "integrate.epilogue", "change_wanted", _EVENTS),
+    Part("histories", "integrate.accepted_step", "accept", _EVENTS),
+    Part("events", "integrate.accepted_step", "handle", _EVENTS),
+    Part("energy balance: adhesion", "observers.dispatch.adhesion_loss", "step", _EVENTS),
+    Part("energy balance: works and losses", "observers.dispatch.balance", "step", _EVENTS),
+    Part("extremes", "observers.dispatch.extremes", "step", _EVENTS),
+    Part("choice of formulas", "integrate.accepted_step", "change_wanted", _EVENTS),
 )
 """A part comes after the one that it is part of."""
 

@@ -184,7 +184,7 @@ for sign in (1.0, -1.0):
     mesh_marks.set_marks(m, sign * -0.01)
     first = count
     while count < first + 10:
-        crossed = m.state.mark_high if sign > 0.0 else m.state.mark_low - 1e-12
+        crossed = m.state.mesh_mark_above if sign > 0.0 else m.state.mesh_mark_below - 1e-12
         y = np.array([0.0, 0.0, crossed, 0.0])
         assert mesh_marks.crossed_mark(m, y)
         before = count
@@ -213,7 +213,7 @@ VISCOUS_LOSS = """
 import numpy as np
 from types import SimpleNamespace
 from gearidae.archive.variables import ENERGY_BALANCE
-from gearidae.engine.followers import balance
+from gearidae.engine.observers import balance
 from gearidae.engine.model.state import STATE
 from gearidae.records.energy import (ENERGY_SUMS, LOSSES)
 from gearidae.records.quantity import in_si
@@ -240,7 +240,7 @@ assert numbers["drag_loss"] == 0.0
 CHANGES = (
     ("PITCH_POINT|coast_phase", {"records/events.py", "engine/events/mesh_marks.py"}, PITCH_POINT),
     ("drive_power", {"records/columns.py", "engine/motion/observe.py"}, DRIVE_POWER),
-    ("viscous_loss", {"records/energy.py", "engine/followers/balance.py"}, VISCOUS_LOSS),
+    ("viscous_loss", {"records/energy.py", "engine/observers/balance.py"}, VISCOUS_LOSS),
 )
 
 

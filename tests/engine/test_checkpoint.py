@@ -38,7 +38,7 @@ def sound():
                 make_problem(scene), scene.run.rtol, scene.run.sample_count, "sksundae", Statistics()
             )
             taken = [block.checkpoint for block in run if block.checkpoint is not None]
-            checkpoints[name] = next(c for c in taken[1:] if restored(name, c)[0].state.near.any())
+            checkpoints[name] = next(c for c in taken[1:] if restored(name, c)[0].state.flank_in_reach.any())
     return checkpoints
 
 

@@ -405,8 +405,8 @@ def test_a_start_beyond_a_fold_is_one():
 def test_a_run_whose_nodes_are_laid_out_anew_can_be_resumed_before_and_after_that(monkeypatch):
     monkeypatch.setattr(build_contact, "deepest_gap", lambda *arguments: 2.0)
     monkeypatch.setattr(portable, "CHECKPOINT_STEPS", 40)
-    deepen, deepened = backend.deepen, []
-    monkeypatch.setattr(backend, "deepen", lambda *call: deepened.append(1) or deepen(*call))
+    extend_nodes, deepened = backend.extend_nodes, []
+    monkeypatch.setattr(backend, "extend_nodes", lambda *call: deepened.append(1) or extend_nodes(*call))
     scene = roller("roller_fast", **{"run.samples": 201})
 
     def blocks(resume=None):

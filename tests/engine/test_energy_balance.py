@@ -380,7 +380,7 @@ def test_pairs_that_turn_round_between_two_looks():
     """Steps and losses are the same wherever the balance looks, and the work of the radius nearly so."""
     scene = LOW.replace({"run.duration": 0.02, "coating.sam_fraction": 0.5, "contact.bodies": "rigid"})
     often, seldom = make_problem(scene), make_problem(scene)
-    often.model.scene.balance_span = 0.0  # at every step and every root
+    often.model.scene.quadrature_time = 0.0  # at every step and every root
     balances = [
         [block.balance for block in native_driver.run(problem, 1e-8, 2, Statistics())][-1]
         for problem in (often, seldom)

@@ -18,11 +18,11 @@ from gearidae.engine.backend import solve
 from gearidae.engine.continuing import end_of
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.sliding import begin_sliding
-from gearidae.engine.followers.rubbing import note_rubbing
 from gearidae.engine.integrate.start import set_rates
 from gearidae.engine.model.record_types import AT_REST
 from gearidae.engine.model.state import PHASE, U, V, W
 from gearidae.engine.motion.shafts import forces_at_shafts
+from gearidae.engine.observers.friction_losses import note_friction
 from gearidae.engine.setup.build import make_problem
 from gearidae.mesh.involute import curvature_radii
 from gearidae.records import EventKind
@@ -212,7 +212,7 @@ def test_the_limit_of_asperities_with_a_zone_is_strength_times_area():
     gap, surface = 10e-9, HIGH.surface
     m, y = standing({**SHEAR, "contact.asperity": "maugis"}, gap)
     forces_at_shafts(m, 0.0, y)
-    for noted in m.work.notes.pair[: m.work.notes.count]:
+    for noted in m.work.pair_forces.pair[: m.work.pair_forces.count]:
         radius = curvature_radii(GEOMETRY, float(noted["position"]) * GEOMETRY.base_pitch)[2]
         area = line_area(gap, 0.0, radius, HIGH.gears.face_width, surface, asperity="maugis")
         assert float(noted["limit"]) == pytest.approx(1e7 * float(area) / float(m.scene.force_unit), rel=1e-8)
@@ -232,7 +232,7 @@ def test_the_limit_of_the_mean_law_is_strength_times_area(f):
         return 2.0 * root * value
 
     mean = quad(integrand, 0.0, 3.0, epsrel=1e-10, limit=200)[0]
-    for noted in m.work.notes.pair[: m.work.notes.count]:
+    for noted in m.work.pair_forces.pair[: m.work.pair_forces.count]:
         radius = curvature_radii(GEOMETRY, float(noted["position"]) * GEOMETRY.base_pitch)[2]
         scale = HIGH.gears.face_width * math.sqrt(2.0 * radius * sigma) * surface.asperity_density
         told = 1e7 * scale * mean / float(m.scene.force_unit)
@@ -255,7 +255,7 @@ def test_the_limit_of_a_population_is_that_of_its_asperities():
                 surface = scene.coated_surface.model_copy(update={"asperity_radius": radius})
                 areas += area_of_tip(surface, overlap)
     told = 1e7 * areas / float(m.scene.force_unit)
-    limits = m.work.notes.pair[: m.work.notes.count]["limit"]
+    limits = m.work.pair_forces.pair[: m.work.pair_forces.count]["limit"]
     assert areas > 0.0
     assert limits.sum() == pytest.approx(told, rel=1e-9)
 
@@ -274,12 +274,12 @@ def test_rates_of_limits_are_those_along_the_motion():
                 forces_at_shafts(m, 0.0, moved)
 
             move(2.0 * h)
-            count = int(m.work.notes.count)
-            rates = m.work.notes.pair[:count][["limit_rate", "force_rate"]].copy()
+            count = int(m.work.pair_forces.count)
+            rates = m.work.pair_forces.pair[:count][["limit_rate", "force_rate"]].copy()
             ends = []
             for time in (h, 3.0 * h):
                 move(time)
-                ends.append(m.work.notes.pair[:count][["limit", "force"]].copy())
+                ends.append(m.work.pair_forces.pair[:count][["limit", "force"]].copy())
             for name, rate in (("limit", "limit_rate"), ("force", "force_rate")):
                 slope = (ends[1][name] - ends[0][name]) / (2.0 * h)
                 np.testing.assert_allclose(rates[rate], slope, rtol=1e-5, atol=1e-6 * abs(slope).max())
@@ -306,7 +306,7 @@ def margins(m, y, mu, hub):
     _, q1, q2 = forces_at_shafts(m, 0.0, y)
     s = m.scene
     c = 1.0 / float(s.sum_curvature)
-    noted = m.work.notes.pair[: m.work.notes.count]
+    noted = m.work.pair_forces.pair[: m.work.pair_forces.count]
     # levers in base pitches: torques over base radii times radii
     a, b = float(s.pinion_radius / s.base_pitch), float(s.gear_radius / s.base_pitch)
     place = [float(contact["position"]) for contact in noted]
@@ -334,8 +334,8 @@ def test_gears_stay_at_rest_inside_the_zonotope_and_move_outside(hub):
         changes |= {"gears.hub_friction": 0.5, "gears.pinion_hub_radius": hub / 0.5 * R1}
     m, y = standing(changes)
     forces_at_shafts(m, 0.0, y)
-    load = float(sum(contact["force"] for contact in m.work.notes.pair[: m.work.notes.count]))
-    assert m.work.notes.count >= 2
+    load = float(sum(contact["force"] for contact in m.work.pair_forces.pair[: m.work.pair_forces.count]))
+    assert m.work.pair_forces.count >= 2
     rng = np.random.default_rng(1)
     for _ in range(1000):
         dry = load * rng.uniform(0.8, 1.1)
@@ -355,14 +355,14 @@ def test_what_begins_to_move_from_rest_meets_gauss_principle():
     mu = 0.3
     m, y = standing({"contact.friction": mu})
     forces_at_shafts(m, 0.0, y)
-    load = float(sum(contact["force"] for contact in m.work.notes.pair[: m.work.notes.count]))
+    load = float(sum(contact["force"] for contact in m.work.pair_forces.pair[: m.work.pair_forces.count]))
     a1, a2 = float(m.scene.pinion_inverse_mass), float(m.scene.gear_inverse_mass)
     rng = np.random.default_rng(2)
     for _ in range(200):
         dry = load * rng.uniform(0.0, 0.5)
         rates, _ = acceleration(m, y, (load * rng.uniform(-1.0, 3.0), dry))
         _, q1, q2 = forces_at_shafts(m, 0.0, y)
-        noted = m.work.notes.pair[: m.work.notes.count]
+        noted = m.work.pair_forces.pair[: m.work.pair_forces.count]
         r1 = [float(m.scene.start_radius + contact["position"]) for contact in noted]
         friction = m.scene.friction
         elements = [
@@ -390,7 +390,7 @@ def test_a_train_held_by_friction_does_not_move_at_all():
     """Pairs on both sides of the pitch point hold what dry resistance leaves, to the last bit."""
     m, y = standing({"contact.friction": 0.5})
     forces_at_shafts(m, 0.0, y)
-    load = float(sum(contact["force"] for contact in m.work.notes.pair[: m.work.notes.count]))
+    load = float(sum(contact["force"] for contact in m.work.pair_forces.pair[: m.work.pair_forces.count]))
     balanced = load * float(m.scene.force_unit)
     scene = HIGH.replace(
         {
@@ -538,13 +538,13 @@ def test_friction_never_gives_power(gap, phase, v, w, coast):
     y[PHASE], y[V], y[W] = phase, v, w
     for history in m.state.history:
         history["pair"] = -(2**62)
-    m.state.near[:] = 0
+    m.state.flank_in_reach[:] = 0
     _accept(m, y)
     begin_sliding(m, 0.0, y)
-    note_rubbing(m, 0.0, y)
-    assert (m.work.rubbing.power >= -1e-12).all()
+    note_friction(m, 0.0, y)
+    assert (m.work.friction.power >= -1e-12).all()
     flank = 1 if coast else 0
-    assert m.work.rubbing.power[1 - flank] == 0.0
+    assert m.work.friction.power[1 - flank] == 0.0
 
 
 def _accept(m, y):
@@ -590,7 +590,7 @@ def limits(scene, gap, rate=0.0):
     m, y = problem.model, problem.start.copy()
     y[V] = rate
     forces_at_shafts(m, 0.0, y)
-    noted = m.work.notes.pair[: m.work.notes.count]
+    noted = m.work.pair_forces.pair[: m.work.pair_forces.count]
     return noted["limit"].copy(), noted["contact"].copy()
 
 
@@ -619,7 +619,7 @@ def test_the_limit_of_elastic_bodies_is_not_that_of_rigid_ones_at_their_gap():
     bodies = limits(HIGH.replace(changes), -6e-9)[0].max()
     m, y = standing(changes, -6e-9)
     forces_at_shafts(m, 0.0, y)
-    rigid = m.work.notes.pair[: m.work.notes.count]["limit"].max()
+    rigid = m.work.pair_forces.pair[: m.work.pair_forces.count]["limit"].max()
     assert 0.0 < bodies < 0.95 * rigid
 
 

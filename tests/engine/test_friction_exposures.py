@@ -7,7 +7,7 @@ import pytest
 
 import gearidae as gd
 from gearidae.engine.backend import solve
-from gearidae.engine.followers.exposures.bins import ROWS
+from gearidae.engine.observers.exposures.bins import ROWS
 
 SMOOTH = gd.preset("teodorescu2009").replace(
     {"contact.bodies": "rigid", "run.exposures": 8, "run.duration": 6e-5, "run.samples": "off"}

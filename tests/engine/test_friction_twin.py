@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.optimize import linprog, minimize
 
 from gearidae.engine.backend import solve
-from gearidae.engine.followers.exposures.bins import ROWS
+from gearidae.engine.observers.exposures.bins import ROWS
 from gearidae.records import EventKind
 from gearidae.records.energy import LOSSES
 from gearidae.scene import preset

@@ -9,12 +9,12 @@ from scipy.optimize import brentq, minimize
 from gearidae.engine.backend import solve
 from gearidae.engine.events.events import chatters
 from gearidae.engine.events.sliding import REVERSALS_HIGH, begin_sliding, rest_reserve
-from gearidae.engine.followers.rubbing import note_rubbing
 from gearidae.engine.friction.hubs import Mesh, consistent_loads, pin_force, vector_sum
 from gearidae.engine.integrate.start import set_rates
 from gearidae.engine.model.record_types import AT_REST, HELD_PAIR, STUCK
 from gearidae.engine.model.state import COAST, V, W
 from gearidae.engine.motion.shafts import forces_at_shafts
+from gearidae.engine.observers.friction_losses import note_friction
 from gearidae.engine.pairs.tooth_pairs import flank_of_history
 from gearidae.engine.setup.build import make_problem
 from gearidae.records import EventKind
@@ -61,7 +61,7 @@ def standing(scene):
 def rolling(m, hub):
     """Acceleration of the pinion and friction of a pair that rolls from rest, as N and f depend on each other [SI]."""
     unit, s = float(m.scene.force_unit), HIGH.gears
-    noted, first = m.work.notes.pair[0], float(m.scene.start_radius)
+    noted, first = m.work.pair_forces.pair[0], float(m.scene.start_radius)
     r1 = (first + float(noted["position"])) * HIGH.geometry.base_pitch
     r2 = HIGH.geometry.base_pitch / float(m.scene.sum_curvature) - r1
     force, drive = float(noted["force"]) * unit, float(m.scene.torque[0]["constant"]) * unit * R1
@@ -80,7 +80,7 @@ def test_acceleration_of_a_rolling_pair_is_the_closed_form(radius):
     """For hubs from a tenth of the base radius to nearly twice it."""
     torque = 4.77e-13 * max((R1 + 0.5 * radius) / (R1 + 15e-6), 1.0)
     m, y = standing(HIGH.replace(ROLLING | {"gears.pinion_hub_radius": radius, "drive.torque": torque}))
-    assert (int(m.work.notes.count), int(m.state.hold)) == (1, HELD_PAIR)
+    assert (int(m.work.pair_forces.count), int(m.state.hold)) == (1, HELD_PAIR)
     rates = np.zeros_like(y)
     set_rates(m, 0.0, y, rates)
     acceleration = (rates[V] + rates[W]) * float(m.scene.length_unit) / float(m.scene.time_unit) ** 2 / R1
@@ -109,9 +109,9 @@ def test_rates_of_the_power_of_a_hub_are_those_along_the_motion():
     set_rates(m, 0.0, y, rates)
     ends = []
     for time in (-h, h, 0.0):
-        note_rubbing(m, 0.0, y + time * rates)
-        ends.append(float(m.work.rubbing.power[2]))
-    assert m.work.rubbing.power_rate[2] == pytest.approx((ends[1] - ends[0]) / (2.0 * h), rel=1e-4)
+        note_friction(m, 0.0, y + time * rates)
+        ends.append(float(m.work.friction.power[2]))
+    assert m.work.friction.power_rate[2] == pytest.approx((ends[1] - ends[0]) / (2.0 * h), rel=1e-4)
 
 
 def test_forces_of_the_coast_flank_are_those_of_the_drive_flank_turned():
@@ -199,7 +199,9 @@ def drawn(rng, *, with_joints=False):
     m, y = standing(scene)
     m.scene.torque[1].constant = 0.0
     forces_at_shafts(m, 0.0, y)
-    load = sum(abs(float(contact["force"])) for contact in m.work.notes.pair[: m.work.notes.count])
+    load = sum(
+        abs(float(contact["force"])) for contact in m.work.pair_forces.pair[: m.work.pair_forces.count]
+    )
     m.scene.torque[1].constant = rng.uniform(0.0, 1.5) * load
     begin_sliding(m, 0.0, y)
     y[V] = y[W] = 0.0
@@ -210,7 +212,7 @@ def largest_push(m, y, rng):
     """Largest force at the pinion that frictions balance, by a search of its own; -inf if the gear is never held."""
     m.scene.torque[0].constant = 0.0
     _, _, gear = forces_at_shafts(m, 0.0, y)
-    friction, notes = m.scene.friction, m.work.notes.pair[: m.work.notes.count]
+    friction, notes = m.scene.friction, m.work.pair_forces.pair[: m.work.pair_forces.count]
     dry, h1, h2 = (
         float(m.scene.torque[1].constant + friction.gear_constant),
         float(friction.pinion_hub),
@@ -322,7 +324,7 @@ def test_a_train_that_begins_to_move_agrees_with_its_directions_of_slip(with_joi
         if int(m.scene.friction.pinion_rubs) != 0:
             assert m.state.pinion_slip * pinion >= -1e-9 * size
         friction = m.scene.friction
-        for contact in m.work.notes.pair[: m.work.notes.count]:
+        for contact in m.work.pair_forces.pair[: m.work.pair_forces.count]:
             r1 = float(m.scene.start_radius + contact["position"])
             slides = friction.pinion_lever * r1 * pinion - friction.gear_lever * (friction.radii - r1) * gear
             slide = int(m.state.history[int(contact["history"])].slide)
@@ -337,7 +339,7 @@ def test_a_rolling_pair_that_is_let_go_slides_as_its_speed_goes_on():
     while sliding < 15:
         m, y = drawn(rng)
         forces_at_shafts(m, 0.0, y)
-        which = int(np.argmax(m.work.notes.pair["limit"][: m.work.notes.count]))
+        which = int(np.argmax(m.work.pair_forces.pair["limit"][: m.work.pair_forces.count]))
         turn = 10.0 ** rng.uniform(0.0, 1.5)
         y[W] = turn * ratio_of_levers(m, which)
         y[V] = turn - y[W]
@@ -365,7 +367,7 @@ def test_a_rolling_pair_that_is_let_go_slides_as_its_speed_goes_on():
 
 def ratio_of_levers(m, which):
     """Surface velocity of the gear over that of the pinion at which a pair of the notes rolls."""
-    friction, r1 = m.scene.friction, float(m.scene.start_radius + m.work.notes.pair[which]["position"])
+    friction, r1 = m.scene.friction, float(m.scene.start_radius + m.work.pair_forces.pair[which]["position"])
     return float(friction.pinion_lever * r1 / (friction.gear_lever * (friction.radii - r1)))
 
 
@@ -373,7 +375,7 @@ def slide_at(m, y, drive, which):
     """How a pair that rolls goes on under a drive."""
     m.scene.torque[0].constant = drive
     begin_sliding(m, 0.0, y)
-    return int(m.state.history[int(m.work.notes.pair[which]["history"])].slide)
+    return int(m.state.history[int(m.work.pair_forces.pair[which]["history"])].slide)
 
 
 # -- runs ------------------------------------------------------------------------------------------------------------

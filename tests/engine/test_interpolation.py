@@ -24,7 +24,7 @@ def stepped():
     problem = make_problem(gd.preset("teodorescu2009"))
     s = native.make_arrays(problem, problem.prepare(1e-6, 0), True)
     places = Places(sun.places(), sun.newton_places())
-    functions, place = callbacks(s.y.size, False, True), problem.located.place
+    functions, place = callbacks(s.y.size, False, True), problem.addresses.place
     out = native.Output.empty(len(problem.columns))
     try:
         vectors = (s.y, s.yp, s.dky)

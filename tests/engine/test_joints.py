@@ -9,8 +9,8 @@ from scipy.integrate import solve_ivp
 
 import gearidae as gd
 from gearidae.engine.backend import solve
-from gearidae.engine.followers.rubbing import note_rubbing
 from gearidae.engine.integrate.start import set_rates
+from gearidae.engine.observers.friction_losses import note_friction
 from gearidae.engine.setup.build import make_problem
 
 CASE = gd.load_case(Path(__file__).parents[2] / "cases" / "microengine.toml")
@@ -205,9 +205,9 @@ def test_rates_of_the_powers_of_joints_are_those_along_the_motion():
     rates, ends = np.zeros_like(y), []
     set_rates(m, time, y, rates)
     for step in (-h, h, 0.0):
-        note_rubbing(m, time + step, y + step * rates)
-        ends.append(np.array(m.work.rubbing.power))
-    noted = np.array(m.work.rubbing.power_rate)
+        note_friction(m, time + step, y + step * rates)
+        ends.append(np.array(m.work.friction.power))
+    noted = np.array(m.work.friction.power_rate)
     assert np.count_nonzero(noted) == 6
     assert noted == pytest.approx((ends[1] - ends[0]) / (2.0 * h), rel=1e-4)
 

@@ -6,11 +6,11 @@ import pytest
 import gearidae as gd
 from gearidae.engine.backend import run_blocks
 from gearidae.engine.events.record import EVENT_NUMBERS, EVENTS_AT_ONCE, record
-from gearidae.engine.followers.passages import PASSAGES_AT_ONCE
 from gearidae.engine.integrate import driver
+from gearidae.engine.integrate.accepted_step import has_room
 from gearidae.engine.integrate.driver import BLOCK_EVENTS, BLOCK_PASSAGES, Ending, Output
-from gearidae.engine.integrate.epilogue import has_room
 from gearidae.engine.model.state import MATERIALS, SLOTS_HIGH
+from gearidae.engine.observers.passages import PASSAGES_AT_ONCE
 from gearidae.engine.setup.build import make_problem
 from gearidae.records import EventKind, Statistics
 

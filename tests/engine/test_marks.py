@@ -28,13 +28,13 @@ def test_a_phase_that_has_crossed_a_mark_is_on_its_far_side(path, coast, start, 
     m.scene.contact_ratio, m.scene.coast_phase = path, coast
     set_marks(m, start)
     y[PHASE] = start
-    assert m.state.mark_low <= start < m.state.mark_high
+    assert m.state.mesh_mark_below <= start < m.state.mesh_mark_above
     for _ in range(90):
-        phase = np.nextafter(m.state.mark_high if way > 0 else m.state.mark_low, way * np.inf)
+        phase = np.nextafter(m.state.mesh_mark_above if way > 0 else m.state.mesh_mark_below, way * np.inf)
         assert way * (phase - y[PHASE]) >= 0.0
         y[PHASE] = phase
         assert crossed_mark(m, y)
         assert cross_mark(m, 0.0, y, events, 0) >= 1
         rebase(m, y)
-        assert m.state.mark_low < y[PHASE] < m.state.mark_high
+        assert m.state.mesh_mark_below < y[PHASE] < m.state.mesh_mark_above
     assert way * (y[PHASE] + m.state.turns - start) > 20.0  # four marks a pitch, at most

@@ -12,16 +12,16 @@ from gearidae.contact.psi import psi
 from gearidae.engine.backend import follow, solve
 from gearidae.engine.events.asperity_events import (
     asperity_guard,
-    flip_asperities,
     join_at_start,
-    record_flips,
+    record_switches,
+    switch_asperities,
 )
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.record import EVENT_NUMBERS
 from gearidae.engine.model.state import EMPTY
 from gearidae.engine.motion.pair_forces import mesh_forces
+from gearidae.engine.population.contact_point import pair_now
 from gearidae.engine.population.forces import asperity_force
-from gearidae.engine.population.spots import pair_now
 from gearidae.engine.setup.build import make_problem
 from gearidae.engine.setup.problem import Problem
 from gearidae.scene import preset
@@ -109,7 +109,7 @@ def test_rolling_at_a_fixed_gap_costs_what_each_asperity_loses():
     scene = GEARS.replace({"coating.sam_fraction": 0.0, "contact.asperities": listed, "initial.gap": gap})
     tip, problem = Tip(scene.surface, scene.surface.asperity_radius), make_problem(scene)
     m, y, room, work = problem.model, problem.start, np.empty((2000, EVENT_NUMBERS)), 0.0
-    m.state.mark_low, m.state.mark_high = 0.0, 1.0  # between which pair 0 is on its path
+    m.state.mesh_mark_below, m.state.mesh_mark_above = 0.0, 1.0  # between which pair 0 is on its path
     times = np.sort(
         np.concatenate([_places(scene, arcs, heights - gap + out, out > 0.0) for out in (0.0, tip.detach)])
     )
@@ -121,8 +121,8 @@ def test_rolling_at_a_fixed_gap_costs_what_each_asperity_loses():
             work -= 2.0 * node * weight * (end - start) * mesh_forces(m, 0.0, y, False)[1]
         y[2] = end
         if asperity_guard(m, y) < 0.0:
-            flip_asperities(m, y)
-            record_flips(m, 0.0, y, room, 0)
+            switch_asperities(m, y)
+            record_switches(m, 0.0, y, room, 0)
     assert m.state.asperity_onsets == m.state.asperity_detachments == count
     force = work * pitch * float(m.scene.force_unit) / (high - low)
     density = count / tail / (high - low)  # N L
@@ -163,7 +163,7 @@ def test_forces_of_many_pairs_scatter_about_the_mean_law(fraction, gap, kappa):
         for tooth in range(19):
             for place in np.linspace(0.02, 0.98, 8) * float(m.scene.contact_ratio):
                 y[2] = tooth + place
-                m.state.mark_low, m.state.mark_high = y[2] - 1e-3, y[2] + 1e-3
+                m.state.mesh_mark_below, m.state.mesh_mark_above = y[2] - 1e-3, y[2] + 1e-3
                 for k in range(int(m.scene.histories)):  # nothing is joined yet
                     m.state.history[k].pair = EMPTY
                 accept(m, 0.0, y)

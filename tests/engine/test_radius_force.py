@@ -55,7 +55,7 @@ def test_its_slopes_are_in_the_jacobian(direction, joined):
     n, yp, cj = 4, np.linspace(0.1, 0.4, 4), 2.5
 
     def differences(on):
-        m.scene.radius_force = on
+        m.scene.curvature_force = on
         matrix = np.empty(n * n)
         jacobian(m, 0.0, cj, y, matrix)
         numeric = np.empty(n)

@@ -6,7 +6,7 @@ import pytest
 import gearidae as gd
 from gearidae.engine import backend, outlook, solve
 from gearidae.engine.backend import run_blocks
-from gearidae.engine.changeover import lighten
+from gearidae.engine.changeover import to_rigid
 from gearidae.engine.elastic.rows import first_unknown
 from gearidae.engine.model.state import EMPTY, STATE, V
 from gearidae.engine.pairs.tooth_pairs import nearest_gap
@@ -24,7 +24,7 @@ SCENE = HIGH.replace(  # the first impact is deep, and no other
         "run.samples": 401,
     }
 )
-NOT_CARRIED = {"light", "energy", "history"}
+NOT_CARRIED = {"rigid_again", "energy", "history"}
 
 
 @pytest.fixture
@@ -42,7 +42,7 @@ def changes(monkeypatch):
         monkeypatch.setattr(backend, name, noted)
 
     note("change_over")
-    note("lighten")
+    note("to_rigid")
     return switches
 
 
@@ -87,7 +87,7 @@ def test_auto_decides_with_friction_too(changes):
 @pytest.mark.parametrize("driver", ["native", "sksundae"])
 def test_a_run_with_one_deep_impact_is_elastic_for_as_long_as_it_matters(changes, driver, monkeypatch):
     solution = solve(SCENE, backend=driver)
-    assert [name for name, _ in changes] == ["change_over", "lighten"]
+    assert [name for name, _ in changes] == ["change_over", "to_rigid"]
     of_drive = (solution.events.kind == EventKind.MESH_EXIT) & (solution.events.flank == Flank.DRIVE)
     exits = solution.events.time[of_drive]
     deep, light = (time for _, time in changes)
@@ -111,7 +111,7 @@ def test_four_exits_are_counted_from_the_last_deep_contact(changes):
     of_drive = (solution.events.kind == EventKind.MESH_EXIT) & (solution.events.flank == Flank.DRIVE)
     exits = solution.events.time[of_drive]
     assert exits[1] < knots[0][0] < exits[2]
-    assert [name for name, _ in changes] == ["change_over", "lighten"]
+    assert [name for name, _ in changes] == ["change_over", "to_rigid"]
     assert changes[1][1] == pytest.approx(exits[5], rel=1e-12, abs=0)
 
 
@@ -130,7 +130,7 @@ def test_a_run_can_be_resumed_before_between_and_after_the_changes(changes, driv
         np.testing.assert_array_equal(np.concatenate(parts), rows)
         assert_same((rest[-1] if rest else whole[-1]).extremes, whole[-1].extremes)
         assert outlook(SCENE, driver, block.checkpoint)[0]["elastic_deflection"] == made.count("change_over")
-    assert seen == {("change_over", "lighten"), ("lighten",), ()}
+    assert seen == {("change_over", "to_rigid"), ("to_rigid",), ()}
 
 
 def test_a_run_that_goes_on_is_equal_to_one_without_a_break():
@@ -179,8 +179,8 @@ def returned():
     bodies = problem.of_checkpoint(resume)
     for prepared in (problem, bodies):
         prepared.prepare(SCENE.run.rtol, 401)
-    assert bodies.lightened(resume)
-    went_on = lighten(bodies, problem, resume)
+    assert bodies.rigid_again(resume)
+    went_on = to_rigid(bodies, problem, resume)
     state, y = np.empty(bodies.start.size), np.empty(problem.start.size)
     bodies.restore(resume, state)
     problem.restore(went_on, y)
@@ -193,7 +193,7 @@ def test_motion_and_state_are_kept(returned):
     old, new = bodies.model.state, problem.model.state
     for name in set(STATE.names) - NOT_CARRIED:
         np.testing.assert_array_equal(new[name], old[name], err_msg=name)
-    assert (old.light, new.light) == (1, 0)
+    assert (old.rigid_again, new.rigid_again) == (1, 0)
 
 
 def test_stretch_in_the_middle_is_kept(returned):

@@ -118,7 +118,7 @@ evaluate.eight_powers = branches.eight_powers = eight_powers
 models = []
 
 
-class Located:  # a model has no address here
+class Addresses:  # a model has no address here
     def __init__(self, m):
         models.append(m)
         self.place = len(models) - 1
@@ -131,7 +131,7 @@ import gearidae as gd
 from gearidae.engine import solve
 from gearidae.engine.integrate import portable
 
-stand_ins = ("Located", Located), ("model_at", models.__getitem__), ("numbers_of", numbers_of)
+stand_ins = ("Addresses", Addresses), ("model_at", models.__getitem__), ("numbers_of", numbers_of)
 for module in [m for name, m in sys.modules.items() if name.startswith("gearidae.engine")]:
     for name, stand_in in stand_ins:
         if hasattr(module, name):

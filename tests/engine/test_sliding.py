@@ -3,8 +3,8 @@
 import pytest
 
 import gearidae as gd
-from gearidae.engine.followers.exposures.bins import ROWS
-from gearidae.engine.followers.exposures.sliding import add_sliding
+from gearidae.engine.observers.exposures.bins import ROWS
+from gearidae.engine.observers.exposures.sliding import add_sliding
 from gearidae.engine.setup.build import make_problem
 
 PLACES = 8

@@ -154,7 +154,7 @@ def test_no_step_is_longer_than_its_excitation_allows():
     gears.scene.mesh_omega, gears.scene.phase_rate = 2 * math.pi, 0.5
     gears.work.adams.new_state[W] = -2.0
     assert control._excitation(gears) == 0.0  # in flight
-    gears.state.near[1] = 1
+    gears.state.flank_in_reach[1] = 1
     assert control._excitation(gears) == pytest.approx(2 * math.pi)
 
 

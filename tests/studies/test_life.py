@@ -8,7 +8,7 @@ import pytest
 
 import gearidae as gd
 from gearidae.archive.exposures import flank_areas, gear_flank_areas
-from gearidae.engine.followers.exposures.bins import ROWS
+from gearidae.engine.observers.exposures.bins import ROWS
 from gearidae.studies.life_coverage import coverage_of
 from gearidae.studies.life_window import Cycles, run_window, steady_exposures, window_scene
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.compiled import compiles
-from gearidae.engine.changeover import change_over, deepen, lighten
+from gearidae.engine.changeover import change_over, extend_nodes, to_rigid
 from gearidae.engine.collecting import Collector
 from gearidae.engine.continuing import checkpoint_of_start, knots_at_start, problem_from
 from gearidae.engine.drivers import formulas, load_driver, native_formulas, ready_driver
@@ -154,11 +154,11 @@ def _with_its_model(
         checkpoint = change_over(current, here, checkpoint)
     elif beyond and current.deeper is not None:
         here = current.deeper()
-        checkpoint = deepen(current, here, checkpoint)
-    elif not beyond and current.depth > problem.depth == 0 and current.lightened(checkpoint):
+        checkpoint = extend_nodes(current, here, checkpoint)
+    elif not beyond and current.depth > problem.depth == 0 and current.rigid_again(checkpoint):
         log.info("contacts have been light for long: continuing with the asperity model")
         here = problem
-        checkpoint = lighten(current, here, checkpoint)
+        checkpoint = to_rigid(current, here, checkpoint)
     if here.has_been_elastic(checkpoint):
         problem.skipped["elastic_deflection"] = 0
     return here, checkpoint

@@ -6,13 +6,13 @@ from collections.abc import Callable
 
 import numpy as np
 
-from gearidae.engine.elastic.histories import book_points, init_nodes
+from gearidae.engine.elastic.histories import accumulate_points, init_nodes
 from gearidae.engine.elastic.rows import GAP, JOINED, SHARE, first_unknown, point_gaps, profile_of, row_of
 from gearidae.engine.events.sliding import settle_start
-from gearidae.engine.followers.balance import carry_balance
-from gearidae.engine.followers.exposures.bins import exposure_table
 from gearidae.engine.model.state import EMPTY, MATERIALS, Floats, Model, assign
 from gearidae.engine.motion.static_solve import SETTLED, settle_nodes
+from gearidae.engine.observers.balance import carry_balance
+from gearidae.engine.observers.exposures.bins import exposure_table
 from gearidae.engine.pairs.tooth_pairs import set_all_branches, set_joined
 from gearidae.engine.setup.problem import Problem
 
@@ -105,7 +105,7 @@ def _limit(carried: Model, m: Model, y: Floats, absent: tuple[bool, ...]) -> Non
                 heights[:] = np.minimum(heights, gaps)
             if limit > 0.0 and (heights < gaps).any():
                 h.stretched = 1
-            book_points(m, k, material)
+            accumulate_points(m, k, material)
 
 
 def take_over(source: Model, m: Model) -> None:
@@ -139,10 +139,10 @@ def remember(source: Model, m: Model, k: int) -> None:
         if limit > 0.0 and m.scene.nodes == 0:
             set_joined(m, k, material, joined)
         stretched = h.direction > 0.0 and joined + limit <= h.gap
-        h.fully_stretched[material] = int(limit > 0.0 and stretched)
+        h.at_pull_off[material] = int(limit > 0.0 and stretched)
 
 
-def lighten(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
+def to_rigid(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
     """Checkpoint from which the asperity problem goes on where the elastic problem has had light contacts for long.
 
     The motion is kept, and how far asperities are stretched in the middle of each contact; what the deflections stored,
@@ -160,7 +160,7 @@ def lighten(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
     m, source = new.model, old.model
     time, state = old.restored(checkpoint)
     take_over(source, m)
-    m.state.light = 0
+    m.state.rigid_again = 0
     y = state[: new.start.size].copy()
     slots, new_slots = int(source.scene.slots), int(m.scene.slots)
     for k in range(int(m.scene.histories)):
@@ -183,7 +183,7 @@ def carry_exposures(source: Model, m: Model) -> None:
         after[:, :both] = before[:, :both]
 
 
-def deepen(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
+def extend_nodes(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
     """Checkpoint from which nodes that reach further go on where those of a contact have been pressed too deep.
 
     Everything is kept but for the nodes' places: joined heights are carried to the new ones by interpolation along the
@@ -246,7 +246,7 @@ def note_gaps(m: Model, y: Floats) -> None:
         gap = m.state.history[k].gap
         row_of(m, k, GAP)[:] = gap + profile_of(m, False) + y[first : first + nodes]
         for material in range(MATERIALS):
-            book_points(m, k, material)
+            accumulate_points(m, k, material)
 
 
 def _interpolate(source: Model, state: Floats, m: Model, y: Floats) -> None:
@@ -289,4 +289,4 @@ def _join(m: Model, y: Floats) -> None:
             row_of(m, k, JOINED + material)[:] += h.joined[material] - h.gap
             if h.joined[material] < h.gap:
                 h.stretched = 1
-            book_points(m, k, material)
+            accumulate_points(m, k, material)

@@ -29,9 +29,6 @@ from gearidae.engine.energy.contacts import stored_energy
 from gearidae.engine.events.asperity_events import join_at_start
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.sliding import begin_sliding, settle_start
-from gearidae.engine.followers.balance import open_balance
-from gearidae.engine.followers.exposures.bins import ROWS, exposure_table, exposures_of
-from gearidae.engine.followers.standing.follow import settle_standing_at
 from gearidae.engine.integrate.start import rebase
 from gearidae.engine.model.record_types import FREE
 from gearidae.engine.model.state import (
@@ -48,6 +45,9 @@ from gearidae.engine.model.state import (
     assign,
 )
 from gearidae.engine.motion.static_solve import settle_nodes
+from gearidae.engine.observers.balance import open_balance
+from gearidae.engine.observers.exposures.bins import ROWS, exposure_table, exposures_of
+from gearidae.engine.observers.standing.follow import settle_standing_at
 from gearidae.engine.population.restore import take_joined
 from gearidae.engine.setup.build import make_problem
 from gearidae.engine.setup.build_torques import KNOT_SPACING
@@ -108,7 +108,7 @@ def checkpoint_of_start(scene: Scene, start: Start) -> Floats:
     assert start.words is not None
     old, old_y = _restored(start.scene, start.words, start.began)
     if old.model.scene.follow.gear != 0:
-        settle_standing_at(old.located.place, float(old.model.state.time))
+        settle_standing_at(old.addresses.place, float(old.model.state.time))
     new = problem_from(scene, start)
     new.prepare(scene.run.rtol, scene.run.sample_count)
     new = _same_contact(old, new)

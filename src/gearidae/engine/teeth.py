@@ -17,10 +17,11 @@ from gearidae.arrays import Floats
 from gearidae.contact.history import extreme_gap, joined_height
 from gearidae.engine.backend import follow
 from gearidae.engine.elastic.rows import JOINED, SHARE, first_unknown, row_of
-from gearidae.engine.integrate.by_address import observe_at
+from gearidae.engine.integrate.entry_points import observe_at
 from gearidae.engine.model.state import PHASE, Model, U, V, W, assign, copied
 from gearidae.engine.motion.pair_forces import force_of_one
 from gearidae.engine.pairs.tooth_pairs import all_pairs, history_of, pair_at, pair_gap
+from gearidae.engine.population.contact_point import spot_at, state_of_pair
 from gearidae.engine.population.layout import (
     ARC,
     HEIGHT,
@@ -30,7 +31,6 @@ from gearidae.engine.population.layout import (
     flank_of,
     joined_candidates,
 )
-from gearidae.engine.population.spots import spot_at, state_of_pair
 from gearidae.engine.setup.problem import Problem
 from gearidae.engine.setup.start import AT_ONCE, Start
 from gearidae.mesh.involute import curvature_radii
@@ -104,7 +104,7 @@ class _Reader:
         # the rows of a population are many, and only read
         before = copied(m.state), copied(m.work), None if m.scene.population.flanks else m.rows.copy()
         y, row = state(), np.empty(len(problem.columns))
-        observe_at(problem.located.place, t, y, row)
+        observe_at(problem.addresses.place, t, y, row)
         seen = dict(zip(problem.columns, row.tolist(), strict=True))
         self.states.append(
             MeshState(

@@ -1,7 +1,7 @@
 """Life of a coating: coverage against passages, by cycle jump from windows at a frozen coverage.
 
 A window is some mesh cycles at a coverage that does not change; what its flanks are exposed to
-(`gearidae.engine.followers.exposures.follow`) gives, by a loss law, the rate at which coverage is lost. The rates are
+(`gearidae.engine.observers.exposures.follow`) gives, by a loss law, the rate at which coverage is lost. The rates are
 integrated over passages (`gearidae.studies.cycle_jump`) until the gear sticks in a window, a coverage or a number of
 passages is reached. Passages in which the coverage changes too fast for that are simulated cycle by cycle
 (`gearidae.studies.life_rates`).

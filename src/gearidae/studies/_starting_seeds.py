@@ -24,16 +24,16 @@ from gearidae.studies.starting_parts import PARTS, parts_of
 from gearidae.studies.starting_ramp import (
     RESTS,
     constant,
-    laid,
     least_damping,
     nothing_followed,
-    pilot,
     pitch_of,
     place_of_seed,
+    probe,
     ramp,
     ramp_end,
     ramp_rate,
     run_from_rest,
+    seated,
 )
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ class _Design:
     ----------
     scene : Scene
         With the coverage.
-    laid : list of Scene
+    seated : list of Scene
         One for each seed.
     scale : float
         Median starting torque beyond the dry resistance, by the pilots [N m].
@@ -80,7 +80,7 @@ class _Design:
     """
 
     scene: GearScene
-    laid: list[GearScene]
+    seated: list[GearScene]
     scale: float = math.nan
     halvings: int = 0
     torques: Floats = field(default_factory=lambda: np.empty(0))
@@ -153,7 +153,7 @@ def starting_torques(
     numbers = range(base.contact.seed, base.contact.seed + count)
 
     def work(kept: RunCache | None) -> xr.Dataset:
-        designs = [_Design(scene, [laid(scene, seed) for seed in numbers]) for scene in scenes]
+        designs = [_Design(scene, [seated(scene, seed) for seed in numbers]) for scene in scenes]
         usual = _STAGES * count * len(designs)
         with execution.side_by_side(kept, usual) as compute:
             _find_all(designs, _Runs(compute))
@@ -164,8 +164,8 @@ def starting_torques(
 
 def _find_all(designs: Sequence[_Design], runs: _Runs) -> None:
     """Find the scale of each design, the torques at rates that are halved until they agree, and who starts at once."""
-    pilots = runs.torques([pilot(at) for design in designs for at in design.laid])
-    for design, torques in _in_parts(designs, pilots):
+    probes = runs.torques([probe(at) for design in designs for at in design.seated])
+    for design, torques in _in_parts(designs, probes):
         dry = pitch_of(design.scene).dry
         started = torques[np.isfinite(torques)] - dry
         if np.isnan(torques).all():
@@ -179,17 +179,17 @@ def _find_all(designs: Sequence[_Design], runs: _Runs) -> None:
         slow = [
             ramp(at, design.scale, n)
             for design, n in zip(waiting, halvings, strict=True)
-            for at in design.laid
+            for at in design.seated
         ]
         for number, (design, torques) in enumerate(_in_parts(waiting, runs.torques(slow))):
-            part = slice(number * len(design.laid), (number + 1) * len(design.laid))
+            part = slice(number * len(design.seated), (number + 1) * len(design.seated))
             design.learn(torques, runs.messages[part])
         waiting = [design for design in waiting if not design.is_settled]
     for design in designs:
         torque, dry = design.scene.drive.torque, pitch_of(design.scene).dry
-        design.starts = np.full(len(design.laid), 0.0 if torque > 0.0 else math.nan)
+        design.starts = np.full(len(design.seated), 0.0 if torque > 0.0 else math.nan)
         if torque > dry:
-            turned = runs.torques([constant(at, design.scale, torque) for at in design.laid])
+            turned = runs.torques([constant(at, design.scale, torque) for at in design.seated])
             design.starts = np.where(np.isnan(turned), np.nan, np.isfinite(turned))
 
 

@@ -98,7 +98,7 @@ def least_damping(scene: GearScene) -> float:
     return max(scene.mesh.damping, DAMPING * critical)
 
 
-def laid(scene: GearScene, seed: int) -> GearScene:
+def seated(scene: GearScene, seed: int) -> GearScene:
     """Scene of a gear at rest, about to touch, at the place that its seed draws."""
     at = scene.replace(
         {
@@ -121,8 +121,8 @@ def place_of_seed(scene: GearScene, seed: int) -> float:
     return float(np.random.default_rng([seed, 99]).random() * scene.gears.pinion_teeth)
 
 
-def pilot(at: GearScene) -> GearScene:
-    """Add a torque that doubles again and again to a scene from `laid`: it finds the scale of its starting torque."""
+def probe(at: GearScene) -> GearScene:
+    """Add a torque that doubles again and again to a scene from `seated`: it finds the scale of its starting torque."""
     pitch, surfaces = pitch_of(at), [material.surface for material in at.materials() if material.share > 0.0]
     tips = [asperity_of(surface) for surface in surfaces]
     pulls = [tip.pull_off for tip in tips if tip.pull_off > 0.0]
@@ -147,7 +147,7 @@ def ramp_end(pitch: Pitch, scale: float) -> float:
 
 
 def ramp(at: GearScene, scale: float, halvings: int) -> GearScene:
-    """Add a torque that rises linearly to a scene from `laid`."""
+    """Add a torque that rises linearly to a scene from `seated`."""
     pitch = pitch_of(at)
     knots = _laying(pitch, _LAYING * scale, _SETTLING * pitch.time(scale))
     time, torque = knots[-1]
@@ -157,7 +157,7 @@ def ramp(at: GearScene, scale: float, halvings: int) -> GearScene:
 
 
 def constant(at: GearScene, scale: float, torque: float) -> GearScene:
-    """Add a torque that is there at once, after the flanks have been laid together, to a scene from `laid`."""
+    """Add a torque that is there at once, after the flanks have been laid together, to a scene from `seated`."""
     pitch = pitch_of(at)
     beyond = torque - pitch.dry
     time = _SETTLING * pitch.time(scale)

@@ -35,7 +35,7 @@ def init_nodes(m: Model, k: int, y: Floats, gap: float) -> None:
     m.state.history[k].stretched = 0
     for material in range(MATERIALS):
         point_gaps(m, k, y, gap, row(m, k, JOINED + material))
-        book_points(m, k, material)
+        accumulate_points(m, k, material)
 
 
 @compiled_once(ELASTIC, makes_arrays=True)
@@ -63,11 +63,11 @@ def join_nodes(m: Model, k: int, y: Floats, gap: float) -> None:
             joined[i] = joined_height(joined[i], gaps[i], limit)
             if gaps[i] > joined[i]:
                 m.state.history[k].stretched = 1
-        book_points(m, k, material)
+        accumulate_points(m, k, material)
 
 
 @compiled(makes_arrays=True)
-def book_points(m: Model, k: int, material: int) -> None:
+def accumulate_points(m: Model, k: int, material: int) -> None:
     """Note the energy of what is joined at the points, which changes when the joined heights do."""
     joined, adhered_energy = row(m, k, JOINED + material), row(m, k, ADHERED_ENERGY + material)
     surface = m.scene.material[material]

@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.engine.elastic.histories import book_points
+from gearidae.engine.elastic.histories import accumulate_points
 from gearidae.engine.elastic.rows import (
     ADHERED_ENERGY,
     GAP,
@@ -48,7 +48,7 @@ def restore_rows(m: Model, rows: Floats) -> None:
     all_rows[:, _kept_columns(m)] = rows.reshape(m.scene.histories, -1)
     for k in np.flatnonzero(_pairs(m) != EMPTY).tolist():
         for material in range(MATERIALS):
-            book_points(m, k, material)
+            accumulate_points(m, k, material)
 
 
 def _pairs(m: Model) -> NDArray[np.int64]:

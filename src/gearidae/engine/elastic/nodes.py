@@ -331,8 +331,8 @@ def node_residual(m: Model, y: Floats, out: Floats) -> None:
     kappa = influence_powers(m)
     for i in range(first_unknown(m, 0), first_unknown(m, m.scene.histories)):
         out[i] = y[i]
-    for j in range(m.work.notes.count):
-        noted = m.work.notes.pair[j]
+    for j in range(m.work.pair_forces.count):
+        noted = m.work.pair_forces.pair[j]
         first, pressure = first_unknown(m, noted.history), row(m, noted.history, PRESSURE)
         deviation = out[first : first + n]
         x = (contact_length(m, noted.position) - m.scene.length_middle) / m.scene.length_half_range

@@ -21,8 +21,8 @@ from gearidae.engine.pairs.tooth_pairs import (
     flank_of_history,
     list_known,
 )
+from gearidae.engine.population.contact_point import state_of_pair
 from gearidae.engine.population.forces import asperities_energy
-from gearidae.engine.population.spots import state_of_pair
 
 
 @compiled_once(SOLVER)

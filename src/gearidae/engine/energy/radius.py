@@ -2,7 +2,7 @@ r"""The changing radius of curvature along the path of contact, and the power or
 
 The length of a contact, and with it the number of asperities in touch, changes along the path, and shares of the
 materials that change with tooth and place change it as well. In the paper's model no force pays for that; see
-`gearidae.engine.followers.balance`, which books the power. With ``mesh.radius_force`` a force does: a pair with the
+`gearidae.engine.observers.balance`, which books the power. With ``mesh.radius_force`` a force does: a pair with the
 length :math:`\ell s_m` of each material, of the energy :math:`U_m` per length, pushes the gear along its motion
 :math:`x_2` with
 
@@ -37,7 +37,7 @@ from gearidae.engine.pairs.tooth_pairs import PairState, flank_of_history, is_on
 def radius_power(m: Model, t: float, y: Floats, w_rate: float) -> tuple[float, float]:
     """Power of the changing radius, what length adds to a pair's energy times the length's rate, and its own rate."""
     power = rate = 0.0
-    if m.scene.radius_force != 0:  # it is the work of a force then, which motion and contacts exchange
+    if m.scene.curvature_force != 0:  # it is the work of a force then, which motion and contacts exchange
         return power, rate
     for i in range(list_known(m, y)):
         k = m.work.known[i]

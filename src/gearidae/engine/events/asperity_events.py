@@ -1,7 +1,7 @@
 """Events of a population: asperities join and detach, each at a root of its own.
 
 A free asperity waits with the guard ``-(overlap + join)``, a joined one with ``overlap + detach``; the least of all is
-watched. Once it has flipped its guard is the width of its hysteresis, so that nothing chatters. The guard is looked at
+watched. Once it has switched its guard is the width of its hysteresis, so that nothing chatters. The guard is looked at
 where steps end. In between an asperity may dip below and come back: guards and their rates at both ends make a cubic
 for each candidate that falls at first and rises in the end, and its minimum says whether to look there.
 """
@@ -17,6 +17,7 @@ from gearidae.engine.events.record import EVENTS_AT_ONCE, record, record_asperit
 from gearidae.engine.model.state import Floats, Model
 from gearidae.engine.pairs.tooth_pairs import PairState, flank_of_history, list_known
 from gearidae.engine.population.candidates import choose, covers, list_joined
+from gearidae.engine.population.contact_point import overlap_slopes, pair_of, spot_at
 from gearidae.engine.population.forces import candidate_energy
 from gearidae.engine.population.layout import (
     ARC,
@@ -31,13 +32,12 @@ from gearidae.engine.population.layout import (
     column,
     flank_of,
 )
-from gearidae.engine.population.spots import overlap_slopes, pair_of, spot_at
 from gearidae.records import EventKind
 
 _ONSET, _DETACHMENT = float(EventKind.ASPERITY_ONSET), float(EventKind.ASPERITY_DETACHMENT)
 _PAIR_ONSET, _PAIR_SEPARATION = float(EventKind.ONSET), float(EventKind.SEPARATION)
 _FLANK_CHANGE: Final = float(EventKind.FLANK_CHANGE)
-FLIPS_HIGH: Final = EVENTS_AT_ONCE // 2
+SWITCHES_HIGH: Final = EVENTS_AT_ONCE // 2
 """Events of asperities at one time, which are too many to follow."""
 CYCLE_HIGH: Final = 100_000
 """Events of asperities from one mesh mark to the next, beyond which they are too many to follow."""
@@ -77,8 +77,8 @@ def _guard(m: Model, k: int, j: int, now: PairState, arc: float, bend: float) ->
 
 
 @compiled_once(POPULATION)
-def flip_asperities(m: Model, y: Floats) -> bool:
-    """Join or detach all asperities whose guards have fallen, for `record_flips` to record; whether any has.
+def switch_asperities(m: Model, y: Floats) -> bool:
+    """Join or detach all asperities whose guards have fallen, for `record_switches` to record; whether any has.
 
     The integration must then begin anew: loads jump, and the rest of the step has been made without them.
 
@@ -89,32 +89,32 @@ def flip_asperities(m: Model, y: Floats) -> bool:
     y : ndarray, shape (n,)
         State at the root.
     """
-    flips = 0
+    asperity_switches = 0
     for k in range(m.scene.histories):
-        m.work.contact[k].flips = 0
+        m.work.contact[k].asperity_switches = 0
     for i in range(list_known(m, y)):
         k = m.work.known[i]
         contact = m.work.contact[k]
         if contact.count == 0:
             continue
-        now, flipped = pair_of(m, k, y), column(m, k, REMEMBERED)
+        now, switched = pair_of(m, k, y), column(m, k, REMEMBERED)
         at = spot_at(m, now.place, now.moves)
         bend = 0.5 * m.scene.population.steepness / at.radius
         for j in range(contact.count):
             guard = _guard(m, k, j, now, at.arc, bend)
             if guard < 0.0:
-                _flip(m, k, j, guard)
-                m.rows[flipped + contact.flips] = j
-                contact.flips += 1
-        if contact.flips > 0:
+                _switch(m, k, j, guard)
+                m.rows[switched + contact.asperity_switches] = j
+                contact.asperity_switches += 1
+        if contact.asperity_switches > 0:
             list_joined(m, k)
-            m.state.cycle_events += contact.flips
-            flips += contact.flips
-    return flips > 0
+            m.state.cycle_events += contact.asperity_switches
+            asperity_switches += contact.asperity_switches
+    return asperity_switches > 0
 
 
 @compiled
-def _flip(m: Model, k: int, j: int, guard: float) -> None:
+def _switch(m: Model, k: int, j: int, guard: float) -> None:
     """Join or detach a candidate, and book the energy that it loses."""
     sign, bound, kind = column(m, k, SIGN) + j, column(m, k, BOUND) + j, int(m.rows[column(m, k, KIND) + j])
     energy = candidate_energy(m, kind, m.rows[sign] * guard - m.rows[bound])
@@ -136,8 +136,8 @@ def _turn(m: Model, k: int, j: int) -> None:
 
 
 @compiled
-def record_flips(m: Model, t: float, y: Floats, events: Floats, count: int) -> tuple[int, bool]:
-    """Record what `flip_asperities` has found, and pairs that come into contact or part with it.
+def record_switches(m: Model, t: float, y: Floats, events: Floats, count: int) -> tuple[int, bool]:
+    """Record what `switch_asperities` has found, and pairs that come into contact or part with it.
 
     Parameters
     ----------
@@ -155,19 +155,19 @@ def record_flips(m: Model, t: float, y: Floats, events: Floats, count: int) -> t
     crowded : bool
         Whether there have been more than can be recorded at once, or in one mesh cycle.
     """
-    flips = 0
+    asperity_switches = 0
     for k in range(m.scene.histories):
         contact, h = m.work.contact[k], m.state.history[k]
         coast = flank_of_history(m, k)
-        for i in range(contact.flips):
-            flips += 1
-            if m.scene.population.quiet == 0 and flips < FLIPS_HIGH:
+        for i in range(contact.asperity_switches):
+            asperity_switches += 1
+            if m.scene.population.quiet == 0 and asperity_switches < SWITCHES_HIGH:
                 j = int(m.rows[column(m, k, REMEMBERED) + i])
                 kind = _ONSET if m.rows[column(m, k, SIGN) + j] > 0.0 else _DETACHMENT
                 asperity = m.rows[column(m, k, INDEX) + j]
                 asperity -= m.tables[m.scene.population.starts_at + flank_of(m, coast, h.pair)]
                 count = record_asperity(m, events, count, (t, kind, h.pair, coast, h.gap_rate), asperity)
-        if contact.flips > 0 and (contact.joined > 0) != (h.in_contact != 0):
+        if contact.asperity_switches > 0 and (contact.joined > 0) != (h.in_contact != 0):
             h.in_contact = 1 - h.in_contact
             kind = _PAIR_ONSET if h.in_contact != 0 else _PAIR_SEPARATION
             count = record_contact(m, y, events, count, (t, kind, h.pair, coast, h.gap_rate))
@@ -175,8 +175,8 @@ def record_flips(m: Model, t: float, y: Floats, events: Floats, count: int) -> t
                 if m.state.last_flank == 1 - coast:
                     count = record(m, events, count, t, _FLANK_CHANGE, h.pair, coast, h.gap_rate)
                 m.state.last_flank = coast
-        contact.flips = 0
-    return count, flips >= FLIPS_HIGH or m.state.cycle_events > CYCLE_HIGH
+        contact.asperity_switches = 0
+    return count, asperity_switches >= SWITCHES_HIGH or m.state.cycle_events > CYCLE_HIGH
 
 
 @compiled_once(POPULATION)
@@ -208,7 +208,7 @@ def note_step_start(m: Model, y: Floats) -> None:
 
 
 @compiled_once(POPULATION)
-def first_dip(m: Model, y: Floats, h: float) -> float:
+def first_grazing_minimum(m: Model, y: Floats, h: float) -> float:
     """Share of a step at which the guard of a candidate is least and below zero, though it is above at both ends.
 
     Parameters

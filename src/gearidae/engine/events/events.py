@@ -51,9 +51,9 @@ def guard(m: Model, t: float, y: Floats) -> float:
         least = min(least, stop_guard(m, t, y))
     if m.scene.friction.on != 0:
         least = min(least, dry_guard(m, t, y))
-    if m.state.near[COAST] == 0:
+    if m.state.flank_in_reach[COAST] == 0:
         least = min(least, nearest_gap(m, COAST, y) - m.scene.cutoff)
-    if m.state.near[DRIVE] == 0:
+    if m.state.flank_in_reach[DRIVE] == 0:
         least = min(least, nearest_gap(m, DRIVE, y) - m.scene.cutoff)
     if m.scene.population.flanks != 0:
         least = min(least, asperity_guard(m, y))
@@ -96,9 +96,9 @@ def handle_mesh(m: Model, t: float, y: Floats, events: Floats, count: int) -> tu
         count = cross_mark(m, t, y, events, count)
         m.state.cycle_events = m.state.reversals = 0
         if m.scene.nodes > 0 and _light(m):
-            m.state.light = 1
+            m.state.rigid_again = 1
         # the force of a pair there jumps, or it would part unseen
-        restart = not in_flight(m) and (m.scene.radius_force != 0 or outruns_relief(m, t, y))
+        restart = not in_flight(m) and (m.scene.curvature_force != 0 or outruns_relief(m, t, y))
     return count, crossed, restart
 
 

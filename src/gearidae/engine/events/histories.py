@@ -28,8 +28,8 @@ def accept(m: Model, t: float, y: Floats) -> None:
     m.state.time = t
     for coast in range(2):
         if nearest_gap(m, coast, y) < m.scene.cutoff:
-            m.state.near[coast] = 1
-        elif m.state.near[coast] != 0:
+            m.state.flank_in_reach[coast] = 1
+        elif m.state.flank_in_reach[coast] != 0:
             clear_history(m, coast)
     reach = pairs_touching(m, y)
     for i in range(reach.total):
@@ -55,7 +55,7 @@ def accept(m: Model, t: float, y: Floats) -> None:
 @compiled
 def clear_history(m: Model, coast: int) -> None:
     """Empty a flank's histories: none of its pairs is near."""
-    m.state.near[coast] = 0
+    m.state.flank_in_reach[coast] = 0
     for k in range(m.scene.slots):
         m.state.history[coast * m.scene.slots + k].pair = EMPTY
         m.state.history[coast * m.scene.slots + k].lag = 0.0
@@ -77,7 +77,7 @@ def init_history(m: Model, k: int, pair: int, gap: float, middle: float) -> None
         h.joined[material] = middle  # beyond the cut-off its branch does not matter
         if gap >= m.scene.cutoff:
             h.adhered_energy[material] = 0.0
-        h.fully_stretched[material] = 0
+        h.at_pull_off[material] = 0
     h.direction = h.lag = h.lag_power = h.lag_rate = 0.0
     h.slide = 0
     m.work.exposing.pair[k].known = 0

@@ -25,13 +25,13 @@ _TINY: Final = 1e-300
 @compiled(inline=True)
 def mark_guard(m: Model, y: Floats) -> float:
     """Distance of the phase from the nearest mark."""
-    return min(y[PHASE] - m.state.mark_low, m.state.mark_high - y[PHASE])
+    return min(y[PHASE] - m.state.mesh_mark_below, m.state.mesh_mark_above - y[PHASE])
 
 
 @compiled(inline=True)
 def crossed_mark(m: Model, y: Floats) -> bool:
     """Whether the phase has crossed one of its marks."""
-    return bool(not m.state.mark_low <= y[PHASE] < m.state.mark_high)
+    return bool(not m.state.mesh_mark_below <= y[PHASE] < m.state.mesh_mark_above)
 
 
 @compiled
@@ -61,14 +61,14 @@ def set_marks(m: Model, phase: float) -> None:
         elif whole + 1 + mark <= phase:  # down from one
             whole += 1
         low, high = max(low, whole + mark), min(high, whole + 1 + mark)
-    m.state.mark_low, m.state.mark_high = low, high
+    m.state.mesh_mark_below, m.state.mesh_mark_above = low, high
 
 
 @compiled
 def cross_mark(m: Model, t: float, y: Floats, events: Floats, count: int) -> int:
     """Mesh entry or exit at the mark just crossed; then bracket the phase anew from the far side."""
-    forward = y[PHASE] >= m.state.mark_high
-    crossed = m.state.mark_high if forward else m.state.mark_low
+    forward = y[PHASE] >= m.state.mesh_mark_above
+    crossed = m.state.mesh_mark_above if forward else m.state.mesh_mark_below
     low, high = -math.inf, math.inf
     for k in range(MARKS):
         mark = first_mark(m, k)
@@ -90,7 +90,7 @@ def cross_mark(m: Model, t: float, y: Floats, events: Floats, count: int) -> int
             low, high = max(low, min(here, crossed)), min(high, here + 1.0)
         else:
             low, high = max(low, here - 1.0), min(high, max(here, crossed))
-    m.state.mark_low, m.state.mark_high = low, high
+    m.state.mesh_mark_below, m.state.mesh_mark_above = low, high
     return count
 
 

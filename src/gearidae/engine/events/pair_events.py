@@ -36,7 +36,7 @@ def pair_guard(m: Model, k: int, gap: float, rate: float, middle: float) -> floa
     if h.direction > 0.0:
         for material in range(MATERIALS):
             limit = m.scene.material[material].stretch_limit
-            if limit > 0.0 and h.fully_stretched[material] == 0:
+            if limit > 0.0 and h.at_pull_off[material] == 0:
                 least = min(least, h.joined[material] + limit - middle)
     return least
 
@@ -99,7 +99,7 @@ def take_event(m: Model, t: float, y: Floats, event: PairEvent, events: Floats, 
         count = _change_contact(m, t, y, event, events, count)
     for material in range(MATERIALS if event.stretches else 0):
         if newly_stretched(m, k, material, event.middle):
-            m.state.history[k].fully_stretched[material] = 1
+            m.state.history[k].at_pull_off[material] = 1
             count = record(m, events, count, t, _FULL_STRETCH, pair, coast, rate)
     if event.turns:
         _turn_round(m, y, k, event.gap, event.middle)
@@ -126,7 +126,7 @@ def _change_contact(m: Model, t: float, y: Floats, event: PairEvent, events: Flo
 def newly_stretched(m: Model, k: int, material: int, middle: float) -> bool:
     """Whether a material's asperities have been stretched in full since that was last recorded."""
     h, limit = m.state.history[k], m.scene.material[material].stretch_limit
-    waiting = limit > 0.0 and h.direction > 0.0 and h.fully_stretched[material] == 0
+    waiting = limit > 0.0 and h.direction > 0.0 and h.at_pull_off[material] == 0
     return bool(waiting and h.joined[material] + limit <= middle)
 
 
@@ -139,7 +139,7 @@ def _turn_round(m: Model, y: Floats, k: int, gap: float, middle: float) -> None:
         limit = m.scene.material[material].stretch_limit
         if limit > 0.0:
             set_joined(m, k, material, joined_height(h.joined[material], middle, limit))
-            h.fully_stretched[material] = 0
+            h.at_pull_off[material] = 0
     if m.scene.nodes > 0:
         join_nodes(m, k, y, gap)
     h.direction = -h.direction

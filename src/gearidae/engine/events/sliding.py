@@ -72,8 +72,8 @@ def sliding_guard(m: Model, t: float, y: Floats) -> float:
     """Least guard of all that has friction."""
     turn, pinion, gear = forces_at_shafts(m, t, y)
     least, state, w = math.inf, m.state, y[W]
-    for i in range(m.work.notes.count if m.scene.friction.flanks != 0 else 0):
-        noted = m.work.notes.pair[i]
+    for i in range(m.work.pair_forces.count if m.scene.friction.flanks != 0 else 0):
+        noted = m.work.pair_forces.pair[i]
         if not _is_known(m, noted):
             continue
         slide, limit = state.history[noted.history].slide, noted.limit
@@ -172,8 +172,8 @@ def settle_sliding(m: Model, t: float, y: Floats, fresh: bool) -> bool:
     turn, pinion, gear = forces_at_shafts(m, t, y)
     jumped = _drop_unloaded(m)
     kind, history = FREE, 0
-    for i in range(m.work.notes.count if m.scene.friction.flanks != 0 else 0):
-        noted = m.work.notes.pair[i]
+    for i in range(m.work.pair_forces.count if m.scene.friction.flanks != 0 else 0):
+        noted = m.work.pair_forces.pair[i]
         h = state.history[noted.history]
         if not _is_known(m, noted):
             continue
@@ -245,8 +245,8 @@ def _drop_unloaded(m: Model) -> bool:
     jumped = False
     for k in range(m.scene.histories):
         h, rubs = m.state.history[k], False
-        for i in range(m.work.notes.count if h.slide != 0 else 0):
-            noted = m.work.notes.pair[i]
+        for i in range(m.work.pair_forces.count if h.slide != 0 else 0):
+            noted = m.work.pair_forces.pair[i]
             rubs |= noted.history == k and noted.pair == h.pair and noted.limit >= 0.5 * RUBS
         if h.slide != 0 and not rubs:
             h.slide, jumped = 0, True
@@ -299,8 +299,8 @@ def _let_go(m: Model, t: float, y: Floats) -> None:
 @compiled
 def _sliding_rate(m: Model, history: int, turn: float, w: float, shafts: Shafts) -> float:
     """Rate of the sliding speed of a pair: by the accelerations, and as its levers change along the path."""
-    for i in range(m.work.notes.count):
-        noted = m.work.notes.pair[i]
+    for i in range(m.work.pair_forces.count):
+        noted = m.work.pair_forces.pair[i]
         if noted.history == history:
             first, second = levers(m, noted.position)
             return first * shafts.pinion - second * shafts.gear + lever_rate(m, noted, turn, w)
@@ -321,7 +321,7 @@ def _rests(m: Model, t: float, y: Floats) -> bool:
 @compiled
 def _decide_at_rest(m: Model, t: float, y: Floats) -> None:
     """Decide on all elements at once, where both gears stand still."""
-    state, work = m.state, m.work.rubbing
+    state, work = m.state, m.work.friction
     state.reversals += 1
     y[W] = y[V] = 0.0
     _, pinion, gear = forces_at_shafts(m, t, y)
@@ -350,9 +350,9 @@ def _levers_of(m: Model, kind: int, history: int) -> tuple[float, float]:
         return 0.0, 1.0
     if kind == HELD_PINION:
         return 1.0, 0.0
-    for i in range(m.work.notes.count):
-        if m.work.notes.pair[i].history == history:
-            first, second = levers(m, m.work.notes.pair[i].position)
+    for i in range(m.work.pair_forces.count):
+        if m.work.pair_forces.pair[i].history == history:
+            first, second = levers(m, m.work.pair_forces.pair[i].position)
             return first, -second
     return 1.0, 0.0
 
@@ -382,7 +382,7 @@ def _set_slip(m: Model, kind: int, history: int, slip: float) -> None:
 @compiled
 def _note_directions(m: Model) -> None:
     """Note all directions of slip before the decisions of one time."""
-    before = m.work.rubbing
+    before = m.work.friction
     before.before_slip = m.state.slip
     for k in range(m.scene.histories):
         before.before_pair[k], before.before_slide[k] = m.state.history[k].pair, m.state.history[k].slide
@@ -391,7 +391,7 @@ def _note_directions(m: Model) -> None:
 @compiled
 def _record_changes(m: Model, t: float, events: Floats, count: int) -> int:
     """Record in what directions of slip have changed by all decisions of one time; the new number of events."""
-    before = m.work.rubbing
+    before = m.work.friction
     for k in range(m.scene.histories):
         h, last = m.state.history[k], before.before_slide[k]
         if h.pair != before.before_pair[k] or h.slide == last or h.slide == 0 or last == 0:

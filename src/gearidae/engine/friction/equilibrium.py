@@ -52,7 +52,7 @@ class _Limits(NamedTuple):
 @compiled
 def equilibrium_margin(m: Model, pinion: float, gear: float) -> float:
     """Largest reserve of force of all vertices; below zero if and only if nothing balances."""
-    work = m.work.rubbing
+    work = m.work.friction
     pinion_dry = gear_dry = 0.0
     for i in range(work.pairs, work.count):
         if work.element[i].hold == HELD_GEAR:
@@ -88,8 +88,8 @@ def _around(m: Model, left: _Left, i: int, side: float, limits: _Limits) -> floa
     best = _at_vertex(_less(m, left, i, side, side), limits)
     best = max(best, _with_one(m, _less(m, left, i, side, 0.0), i, limits))
     first = j = -1
-    for k in range(m.work.rubbing.pairs):
-        if m.work.rubbing.element[k].coast == m.work.rubbing.element[i].coast:
+    for k in range(m.work.friction.pairs):
+        if m.work.friction.element[k].coast == m.work.friction.element[i].coast:
             if first < 0:
                 first = k
             elif j < 0:
@@ -105,7 +105,7 @@ def _less(m: Model, left: _Left, i: int, side: float, end: float) -> _Left:
 
     Pairs with larger levers at the pinion have one direction there, those with smaller ones the other.
     """
-    work = m.work.rubbing
+    work = m.work.friction
     element = work.element[i]
     pinion, gear, along, over = left
     first, second = across(m, element.coast != 0)
@@ -143,7 +143,7 @@ def _reserve_of_gear(limits: _Limits, loads: Loads, force: float) -> float:
 @compiled
 def _with_one(m: Model, left: _Left, i: int, limits: _Limits) -> float:
     """Largest reserve where the friction of one pair is such that one shaft is held by all that it has."""
-    element, best = m.work.rubbing.element[i], -math.inf
+    element, best = m.work.friction.element[i], -math.inf
     for which in range(4):
         sign = 1.0 - 2.0 * (which % 2)
         falls = gear_falls = 0.0
@@ -174,7 +174,7 @@ def _with_two(m: Model, left: _Left, i: int, k: int, limits: _Limits) -> float:
 
     Two pairs of one flank stand for all frictions inside its zonotope.
     """
-    work, best = m.work.rubbing, -math.inf
+    work, best = m.work.friction, -math.inf
     first, second = work.element[i], work.element[k]
     determinant = first.pinion * second.gear - second.pinion * first.gear
     if abs(determinant) < _PARALLEL:
@@ -218,7 +218,7 @@ def _with_two(m: Model, left: _Left, i: int, k: int, limits: _Limits) -> float:
 @compiled
 def _inside(m: Model, coast: int, pinion: float, gear: float) -> float:
     """How far the frictions of a flank are inside its zonotope, by the forces that they take from both shafts."""
-    work, least = m.work.rubbing, math.inf
+    work, least = m.work.friction, math.inf
     for i in range(work.pairs):
         element = work.element[i]
         if element.coast != coast:

@@ -134,8 +134,8 @@ def _sum_pairs(m: Model, turn: float, w: float, pinion: float, gear: float) -> _
     drive = coast = drive_friction = coast_friction = 0.0
     held_first = held_second = limit = bend = 0.0
     coast_held = False
-    for i in range(m.work.notes.count):
-        noted = m.work.notes.pair[i]
+    for i in range(m.work.pair_forces.count):
+        noted = m.work.pair_forces.pair[i]
         on_coast = flank_of_history(m, noted.history) == COAST
         if on_coast:
             coast += noted.force
@@ -294,8 +294,8 @@ def friction_slopes(m: Model, y: Floats) -> Slopes:
     state, a1, a2 = m.state, m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass
     by_pinion, by_both, by_gear = a1, 0.0, a2
     pinion_u = pinion_phase = gear_u = gear_phase = pinion_v = pinion_w = gear_v = gear_w = 0.0
-    for i in range(m.work.notes.count if m.scene.friction.flanks != 0 else 0):
-        noted = m.work.notes.pair[i]
+    for i in range(m.work.pair_forces.count if m.scene.friction.flanks != 0 else 0):
+        noted = m.work.pair_forces.pair[i]
         coast = flank_of_history(m, noted.history)
         first, second = levers(m, noted.position)
         if state.hold == HELD_PAIR and noted.history == state.held_pair:

@@ -60,8 +60,8 @@ def set_limits(m: Model, t: float, w: float) -> None:
         Surface velocity of the gear, which carries a pair along the path of contact.
     """
     friction = m.scene.friction
-    for i in range(m.work.notes.count):
-        noted = m.work.notes.pair[i]
+    for i in range(m.work.pair_forces.count):
+        noted = m.work.pair_forces.pair[i]
         if m.scene.population.flanks != 0:
             noted.force_rate = noted.slope * noted.gap_rate + noted.drift
             continue
@@ -91,7 +91,7 @@ def _length_rate(m: Model, noted: Record, w: float) -> float:
 @compiled_once(FRICTION)
 def _limit_of_materials(m: Model, t: float, i: int) -> tuple[float, float]:
     """Limit of the i-th pair of the notes and its slope in the gap, as its force is computed, with other laws."""
-    noted = m.work.notes.pair[i]
+    noted = m.work.pair_forces.pair[i]
     friction, k, gap = m.scene.friction, noted.history, noted.gap
     h = m.state.history[k]
     shares = shares_of(m, flank_of_history(m, k), noted.pair, noted.position)

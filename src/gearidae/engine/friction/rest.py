@@ -34,10 +34,10 @@ from gearidae.engine.pairs.tooth_pairs import flank_of_history
 @compiled
 def list_elements(m: Model, t: float, y: Floats) -> None:
     """List the elements of gears at rest: the pairs that rub, and what resists the gear and the pinion, with joints."""
-    friction, work, count = m.scene.friction, m.work.rubbing, 0
+    friction, work, count = m.scene.friction, m.work.friction, 0
     drive = coast = 0.0
-    for i in range(m.work.notes.count):
-        noted = m.work.notes.pair[i]
+    for i in range(m.work.pair_forces.count):
+        noted = m.work.pair_forces.pair[i]
         on_coast = flank_of_history(m, noted.history) == COAST
         if on_coast:
             coast += noted.force
@@ -77,7 +77,7 @@ def rest_margin(m: Model, pinion: float, gear: float) -> float:
     Below zero where no frictions balance them. Without hubs it is the least distance: the forces that are held are a
     zonotope, with one inequality for each element, perpendicular to it, and one along it, as all may be parallel.
     """
-    work = m.work.rubbing
+    work = m.work.friction
     if work.count == 0:
         return -math.hypot(pinion, gear)
     if has_hubs(m):
@@ -93,7 +93,7 @@ def rest_margin(m: Model, pinion: float, gear: float) -> float:
 @compiled(inline=True)
 def _held_along(m: Model, x: float, y: float, pinion: float, gear: float) -> float:
     """How much more force all elements hold along a direction than is there."""
-    work, held = m.work.rubbing, 0.0
+    work, held = m.work.friction, 0.0
     for j in range(work.count):
         other = work.element[j]
         held += other.limit * abs(x * other.pinion + y * other.gear)
@@ -122,7 +122,7 @@ class Way(NamedTuple):
 @compiled
 def way_from_rest(m: Model, pinion: float, gear: float) -> Way:
     """Accelerations of gears at rest under forces that are not held, with the elements of `list_elements`."""
-    work = m.work.rubbing
+    work = m.work.friction
     a1, a2 = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass
     best = Way(a1 * pinion, a2 * gear, -math.inf, -1)
     for i in range(work.count):
@@ -155,7 +155,7 @@ class _Slipping(NamedTuple):
 @compiled
 def _slipping(m: Model, pinion: float, gear: float, x: float, y: float, i: int, side: float) -> _Slipping:
     """All elements slip as both gears accelerate along (x, y), the i-th and those like it as `side` says."""
-    work = m.work.rubbing
+    work = m.work.friction
     element, by_pinion, by_gear = work.element[i], 0.0, 0.0
     along, over = work.load[0], work.load[1]
     for j in range(work.count):
@@ -181,14 +181,14 @@ def _slipping(m: Model, pinion: float, gear: float, x: float, y: float, i: int, 
 @compiled(inline=True)
 def _loads(m: Model, s: _Slipping) -> Loads:
     """Loads of both hubs where all that rubs slips."""
-    pin = m.work.rubbing.pin
+    pin = m.work.friction.pin
     return Loads(math.hypot(s.along - pin[0], s.over - pin[1]), math.hypot(s.along, s.over))
 
 
 @compiled
 def _along(m: Model, pinion: float, gear: float, x: float, y: float, i: int) -> Way:
     """Accelerations in a direction in which the i-th element holds."""
-    element, s = m.work.rubbing.element[i], _slipping(m, pinion, gear, x, y, i, 0.0)
+    element, s = m.work.friction.element[i], _slipping(m, pinion, gear, x, y, i, 0.0)
     a1, a2 = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass
     easy = a1 * element.pinion**2 + a2 * element.gear**2
     held = (a1 * element.pinion * s.pinion + a2 * element.gear * s.gear) / easy
@@ -196,7 +196,7 @@ def _along(m: Model, pinion: float, gear: float, x: float, y: float, i: int) -> 
     near = far = _loads(m, s)
     room = math.inf
     if element.hold == HELD_PAIR:
-        total, pin = (s.along, s.over), (m.work.rubbing.pin[0], m.work.rubbing.pin[1])
+        total, pin = (s.along, s.over), (m.work.friction.pin[0], m.work.friction.pin[1])
         near, far, room = loads_with_friction(m, element.coast != 0, total, held, (falls, gear_falls), pin)
     best = Way(0.0, 0.0, -math.inf, i)
     for which in range(2):
@@ -215,7 +215,7 @@ def _along(m: Model, pinion: float, gear: float, x: float, y: float, i: int) -> 
 @compiled
 def _between(m: Model, pinion: float, gear: float, x: float, y: float, i: int, side: float) -> Way:
     """Accelerations with the directions of slip just beside that direction."""
-    work, s = m.work.rubbing, _slipping(m, pinion, gear, x, y, i, side)
+    work, s = m.work.friction, _slipping(m, pinion, gear, x, y, i, side)
     a1, a2 = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass
     element, loads, reserve = work.element[i], _loads(m, s), math.inf
     a, b = a1 * (s.pinion - s.by_pinion * loads.pinion), a2 * (s.gear - s.by_gear * loads.gear)

@@ -10,7 +10,7 @@ from numba import carray, types  # type: ignore[attr-defined]
 
 from gearidae.compiled import compiled, compiled_callback
 from gearidae.engine.integrate.newton import Attempt, iterate
-from gearidae.engine.model.located import model_at
+from gearidae.engine.model.addresses import model_at
 from gearidae.engine.motion.block_jacobian import assemble, factorise, solve_blocks, unknowns
 from gearidae.engine.motion.residual import jacobian, residual
 from gearidae.engine.sundials import memory as ptr

@@ -10,8 +10,8 @@ import numpy as np
 
 from gearidae.compiled import compiled
 from gearidae.engine.events.record import EVENT_NUMBERS
-from gearidae.engine.followers.passages import PASSAGE_NUMBERS, units
 from gearidae.engine.model.state import Floats, Model, Record
+from gearidae.engine.observers.passages import PASSAGE_NUMBERS, units
 from gearidae.records import COUNTERS, Block, Ending, EnergyBalance, Extremes, Passages, Statistics
 
 if TYPE_CHECKING:

@@ -14,10 +14,10 @@ import numpy as np
 
 from gearidae.arrays import Ints
 from gearidae.compiled import compiled
-from gearidae.engine.elastic.elimination import begin_deflections
+from gearidae.engine.elastic.static_condensation import begin_deflections
 from gearidae.engine.events.stops import next_stop
 from gearidae.engine.formulas import adams
-from gearidae.engine.integrate.by_address import observe_at
+from gearidae.engine.integrate.accepted_step import finish_step, has_room, prepare_restart, prepare_start
 from gearidae.engine.integrate.callbacks import callbacks
 from gearidae.engine.integrate.driver import (
     BLOCK_SECONDS,
@@ -33,12 +33,12 @@ from gearidae.engine.integrate.driver import (
     sample_time,
     update_statistics,
 )
-from gearidae.engine.integrate.epilogue import finish_step, has_room, prepare_restart, prepare_start
+from gearidae.engine.integrate.entry_points import observe_at
 from gearidae.engine.integrate.resting import longest_step, rest_step
 from gearidae.engine.integrate.root_finding import SHARPNESS, Arrays, Stepper, next_time, start_search
 from gearidae.engine.integrate.start import first_step
 from gearidae.engine.integrate.step_control import configure_ida
-from gearidae.engine.model.located import model_at
+from gearidae.engine.model.addresses import model_at
 from gearidae.engine.model.state import Floats, Model
 from gearidae.engine.motion.observe import observe
 from gearidae.engine.motion.pair_forces import is_eliminated, set_deflections
@@ -148,7 +148,7 @@ def advance(place: int, arrays: Arrays, out: Output, budget: int) -> None:
     Parameters
     ----------
     place : int
-        Where the model lies, from `Located`; its ``work.driver`` says where the run stands.
+        Where the model lies, from `Addresses`; its ``work.driver`` says where the run stands.
     out : Output
         Rows, events and passages of this block.
     budget : int
@@ -258,9 +258,9 @@ def run(
     if total > 0 and m.state.progress.next_sample == 0:
         if reader is not None and reader.sample == 0:
             reader.read(problem, float(s.clock[0]), lambda: s.y)
-        observe_at(problem.located.place, float(s.clock[0]), s.y, out.rows[0])
+        observe_at(problem.addresses.place, float(s.clock[0]), s.y, out.rows[0])
         m.work.driver.rows = m.state.progress.next_sample = 1
-    place = problem.located.place
+    place = problem.addresses.place
     unknowns = s.y.size
     if m.scene.nodes > 0 and not as_ida:
         unknowns = _weigh_motion(m)
@@ -287,7 +287,7 @@ def _blocks(
     while driver.done == 0 and driver.error == 0 and not beyond:
         started = time.monotonic()
         room = out if reader is None else out.before(m, reader.sample)
-        advance(problem.located.place, s, room, budget)
+        advance(problem.addresses.place, s, room, budget)
         budget = _next_budget(budget, time.monotonic() - started)
         update_statistics(statistics, m.state.progress)
         statistics.ending = ending_of_flag(int(driver.error), elastic or m.scene.population.flanks > 0)
@@ -310,7 +310,7 @@ def _blocks(
 
 def _read(problem: Problem, s: Arrays, reader: SampleReader) -> None:
     """Have the model read at the sample that the step waits with."""
-    place, due = problem.located.place, float(sample_time(problem.model, reader.sample))
+    place, due = problem.addresses.place, float(sample_time(problem.model, reader.sample))
 
     def state() -> Floats:
         state_at_sample(place, s, due)

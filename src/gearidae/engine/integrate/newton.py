@@ -95,10 +95,10 @@ def iterate(n: int, m: Model, attempt: Attempt) -> int:
     a.new_step = attempt.step
     a.contraction_rate *= GROWTH
     last = math.inf
-    m.work.unsettled = 0
+    m.work.not_converged = 0
     for _ in range(MOST):
         norm = _correct(n, m, attempt, cj)
-        if m.work.unsettled != 0:
+        if m.work.not_converged != 0:
             break
         if last < math.inf:
             if norm > SLOWEST * last:

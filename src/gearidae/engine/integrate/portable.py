@@ -2,8 +2,8 @@
 
 Slower by the cost of its Python callbacks, and free of any assumption about how SUNDIALS was built. The formulas are
 IDA's own, so that a run is less accurate at the same tolerance (`gearidae.engine.formulas.adams`); histories and
-events are dealt with as in the native driver (`gearidae.engine.integrate.epilogue`). Between steps it interpolates for
-itself, because the API has no dense output.
+events are dealt with as in the native driver (`gearidae.engine.integrate.accepted_step`). Between steps it interpolates
+for itself, because the API has no dense output.
 """
 
 from __future__ import annotations
@@ -19,16 +19,7 @@ from sksundae.ida import IDA
 from gearidae.compiled import compiled
 from gearidae.engine.events.events import ROOT, STOP
 from gearidae.engine.events.stops import next_stop
-from gearidae.engine.integrate.by_address import (
-    finish_step_at,
-    first_dip_at,
-    guard_at,
-    jacobian_at,
-    note_step_start_at,
-    observe_at,
-    residual_at,
-    rest_step_at,
-)
+from gearidae.engine.integrate.accepted_step import has_room, prepare_restart, prepare_start
 from gearidae.engine.integrate.driver import (
     BLOCK_SECONDS,
     CHECKPOINT_STEPS,
@@ -42,10 +33,19 @@ from gearidae.engine.integrate.driver import (
     sample_time,
     update_statistics,
 )
-from gearidae.engine.integrate.epilogue import has_room, prepare_restart, prepare_start
+from gearidae.engine.integrate.entry_points import (
+    finish_step_at,
+    first_grazing_minimum_at,
+    guard_at,
+    jacobian_at,
+    note_step_start_at,
+    observe_at,
+    residual_at,
+    rest_step_at,
+)
 from gearidae.engine.integrate.resting import longest_step
 from gearidae.engine.integrate.start import first_step
-from gearidae.engine.model.located import Located
+from gearidae.engine.model.addresses import Addresses
 from gearidae.engine.model.state import Floats, Model, Record
 from gearidae.engine.motion.block_jacobian import dense_jacobian, store_size
 from gearidae.engine.motion.static_solve import fold_gap
@@ -85,7 +85,7 @@ def run(
     ):  # the state there, whatever rounding has made of the sample's time
         if reader is not None and reader.sample == 0:
             reader.read(problem, float(driver.time), y.copy)
-        observe_at(solver.located.place, float(driver.time), y, out.rows[0])
+        observe_at(solver.addresses.place, float(driver.time), y, out.rows[0])
         driver.rows = progress.next_sample = 1
     solver.start(y)
     between = (np.zeros_like(y), np.zeros_like(y))
@@ -98,7 +98,7 @@ def run(
         yield from _samples(problem, solver, out, y, reader)
         if not has_room(driver.events, driver.passages, out):
             yield out.block(m, driver.time)
-        afresh = finish_step_at(solver.located.place, y, yp, between, flag, out)
+        afresh = finish_step_at(solver.addresses.place, y, yp, between, flag, out)
         if driver.error in MODEL_CHANGES:
             progress.restarts += 1
         checkpoint = driver.since >= CHECKPOINT_STEPS
@@ -144,7 +144,7 @@ def _samples(
         state = y if due == driver.time else trail.at(due)
         if reader is not None and progress.next_sample == reader.sample:
             reader.read(problem, due, state.copy)
-        observe_at(solver.located.place, due, state, out.rows[driver.rows])
+        observe_at(solver.addresses.place, due, state, out.rows[driver.rows])
         progress.next_sample += 1
         driver.rows += 1
         if driver.rows == out.rows.shape[0]:
@@ -155,7 +155,7 @@ class _Solver:
     """scikit-sundae's IDA over fresh callbacks, since it keeps the event history on the function it is given."""
 
     def __init__(self, problem: Problem, m: Model, y: Floats) -> None:
-        self.m, self.located, self._atol = m, Located(m), m.scene.rtol * problem.tolerance_scale
+        self.m, self.addresses, self._atol = m, Addresses(m), m.scene.rtol * problem.tolerance_scale
         self._driver: Record = m.work.driver
         self._guard_calls = 0
         self._last: Any = None
@@ -181,26 +181,26 @@ class _Solver:
     def _note(self, y: Floats) -> None:
         """Note the asperities at a state from which the next step goes on."""
         if self.m.scene.population.flanks > 0:
-            note_step_start_at(self.located.place, float(self._driver.time), y)
+            note_step_start_at(self.addresses.place, float(self._driver.time), y)
 
-    def _dip(self, t: float, y: Floats) -> float:
+    def _grazing_minimum(self, t: float, y: Floats) -> float:
         """Time in the step up to t at which an asperity dips below its guard and comes back; infinite if none does."""
         before = float(self._driver.time)
         if self.m.scene.population.flanks == 0 or t <= before:
             return math.inf
-        share = first_dip_at(self.located.place, t, y, t - before)
+        share = first_grazing_minimum_at(self.addresses.place, t, y, t - before)
         return before + share * (t - before) if share > 0.0 else math.inf
 
-    def _look_at(self, dip: float) -> None:
+    def _look_at(self, grazing: float) -> None:
         """Take the last step anew, and stop where an asperity dips: its root is then found."""
         t, y, yp = self.trail.last
         self.count()
-        self._make(y.size, 0.25 * (dip - t))
+        self._make(y.size, 0.25 * (grazing - t))
         self._ida.init_step(t, y, yp)
-        self._last, self._counted, self._look = None, (0, 0), dip
+        self._last, self._counted, self._look = None, (0, 0), grazing
 
     def _make(self, n: int, step: float) -> None:
-        m, place = self.m, self.located.place
+        m, place = self.m, self.addresses.place
         column_major = np.empty(n * n)
         # what scikit-sundae passes is read-only, which is another type to numba
         state, rates = np.empty(n), np.empty(n)
@@ -243,7 +243,7 @@ class _Solver:
         driver = self._driver
         driver.since += 1
         if driver.resting != 0:
-            driver.time, flag = rest_step_at(self.located.place, float(driver.time), y)
+            driver.time, flag = rest_step_at(self.addresses.place, float(driver.time), y)
             self.trail.add(float(driver.time), y, np.zeros_like(y))
             return flag, y, np.zeros_like(y)
         try:
@@ -257,9 +257,9 @@ class _Solver:
             driver.error = flag if flag < 0 else -1
             self.ending = None if flag < 0 else Ending.NOT_FINITE
             return flag, result.y, result.yp
-        dip = self._dip(result.t, result.y.copy()) if self._look == math.inf else math.inf
-        if dip < math.inf:
-            self._look_at(dip)
+        grazing = self._grazing_minimum(result.t, result.y.copy()) if self._look == math.inf else math.inf
+        if grazing < math.inf:
+            self._look_at(grazing)
             return self.step(y)
         if flag == STOP and result.t == self._look < self._stop:
             flag, self._look = 0, math.inf

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.compiled import compiled
-from gearidae.engine.events.asperity_events import first_dip, note_step_start
+from gearidae.engine.events.asperity_events import first_grazing_minimum, note_step_start
 from gearidae.engine.events.events import guard
 from gearidae.engine.formulas import adams
 from gearidae.engine.model.state import Floats, Model
@@ -134,7 +134,7 @@ def next_time(s: Stepper) -> int:
             return flag
     high, end = _look(s, s.clock[0]), s.clock[0]
     if s.m.scene.population.flanks != 0 and search.low > 0.0 < high:
-        high = _dip(s, high)
+        high = _grazing_minimum(s, high)
     if search.low > 0.0 > high:
         search.step_end = end
         search.rest = 1
@@ -159,7 +159,7 @@ def next_time(s: Stepper) -> int:
 
 
 @compiled
-def _dip(s: Stepper, high: float) -> float:
+def _grazing_minimum(s: Stepper, high: float) -> float:
     """Look where an asperity may dip below its guard within the interval; go there if it does.
 
     Returns
@@ -168,7 +168,7 @@ def _dip(s: Stepper, high: float) -> float:
         The guard at the time reached, which is `high` at the end of the interval unless there is a dip.
     """
     end, low = s.clock[0], s.m.work.search.low_time
-    share = first_dip(s.m, s.y, end - low)
+    share = first_grazing_minimum(s.m, s.y, end - low)
     if share <= 0.0:
         return high
     s.clock[0] = low + share * (end - low)
@@ -186,7 +186,7 @@ def _find_dips(s: Stepper) -> None:
     """Look for dips before a root that has been found, and find the first of them instead."""
     for _ in range(DIPS):
         root = s.clock[0]
-        value = _dip(s, 1.0)
+        value = _grazing_minimum(s, 1.0)
         if s.clock[0] == root:
             return
         _find(s, value, True)

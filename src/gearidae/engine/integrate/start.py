@@ -83,8 +83,8 @@ def rebase(m: Model, y: Floats) -> None:
     shift = slots * math.floor(y[PHASE] / slots)
     y[PHASE] -= shift
     m.state.turns += shift
-    m.state.mark_low -= shift
-    m.state.mark_high -= shift
+    m.state.mesh_mark_below -= shift
+    m.state.mesh_mark_above -= shift
     for k in range(m.scene.histories):
         if m.state.history[k].pair != EMPTY:
             m.state.history[k].pair -= int(shift)

@@ -56,7 +56,7 @@ HISTORY_FIELDS: Final = (
         shape=(MATERIALS,),
         high=_HEIGHT_HIGH,
     ),
-    flag("fully_stretched", "1 once full stretch has been reached on the way apart", shape=(MATERIALS,)),
+    flag("at_pull_off", "1 once full stretch has been reached on the way apart", shape=(MATERIALS,)),
     Quantity(
         "adhered_energy",
         "adhesion loss above `joined`, rigid bodies",
@@ -198,19 +198,22 @@ STATE_FIELDS: Final = (
     Quantity(
         "first_place", "position of the gear where a chain of runs began, where shafts' angles are 0", PITCHES
     ),
-    Quantity("first_lead", "u + e there: lead of the pinion's base circle over the gear's", LENGTH),
+    Quantity("initial_lead", "u + e there: lead of the pinion's base circle over the gear's", LENGTH),
     Quantity(
-        "mark_low", "phase of the nearest mesh entry or exit below the present one", PITCHES, high=COUNT_HIGH
+        "mesh_mark_below",
+        "phase of the nearest mesh entry or exit below the present one",
+        PITCHES,
+        high=COUNT_HIGH,
     ),
-    Quantity("mark_high", "phase of the nearest one above", PITCHES, high=COUNT_HIGH),
+    Quantity("mesh_mark_above", "phase of the nearest one above", PITCHES, high=COUNT_HIGH),
     Quantity("slip", "direction of the gear's slip against dry resistance, -1 or +1; 0 while it is stuck"),
-    flag("near", "1 for a flank close enough for any pair to touch", shape=(2,)),
+    flag("flank_in_reach", "1 for a flank close enough for any pair to touch", shape=(2,)),
     count("last_flank", "flank of the last onset, -1 before the first", low=-1, high=1),
     flag("bound_exceeded", "1 once a pair has been below the lowest gap"),
     count(
         "deep_exits", "mesh exits when elastic contacts were last too deep for rigid ones, -1 before", low=-1
     ),
-    flag("light", "1 once that has been long ago"),
+    flag("rigid_again", "1 once that has been long ago"),
     Quantity("last_root", "time of the last root", TIME),
     count("roots", "how many have come in close succession", high=lambda scene: scene.root_limit),
     count("next_knot", "index of the coming knot among all knots", high=lambda scene: scene.knot_count),

@@ -118,7 +118,7 @@ FRICTION: Final = record_type(  # of flanks and joints: hubs and the pin of a dr
     ("blur", REAL),  # error of the transmission error within which the force of a pair is known [sigma]
 )
 
-FOLLOW: Final = record_type(  # 1 for each follower of the run that is wanted
+FOLLOW: Final = record_type(  # 1 for each observer of the run that is wanted
     ("balance", INT),  # energy balance, and joining for it
     ("friction", INT),  # losses by friction, for it
     ("extremes", INT),  # extremes of the run
@@ -158,7 +158,7 @@ SCENE: Final = record_type(
     ("marks", INT),  # kinds of marks of the mesh in each pitch; 0 where the gear is held [1]
     ("start_radius", REAL),  # pinion's radius of curvature where contact begins [pb]
     ("sum_curvature", REAL),  # 1 over the sum of both radii of curvature [1/pb]
-    ("radius_force", INT),  # 1 if a force pays for the changing contact length
+    ("curvature_force", INT),  # 1 if a force pays for the changing contact length
     *((name, REAL) for name in KEYED),
     ("drag", REAL),  # force per squared surface velocity [F tau^2/sigma^2]
     ("viscous", REAL),  # force per surface velocity [F tau/sigma]
@@ -238,8 +238,8 @@ SCENE: Final = record_type(
     ("free_step", REAL),  # longest step of free gears, whatever the tolerance; 0 for any [tau]
     ("angle_omega", REAL),  # highest angular frequency of the torques of an angle [rad/pb]
     ("mesh_omega", REAL),  # highest angular frequency along the mesh [rad/pb]
-    ("balance_steps", INT),  # accepted steps that the energy balance integrates over at once [1]
-    ("balance_span", REAL),  # over which they may last [tau]
+    ("quadrature_steps", INT),  # accepted steps that the energy balance integrates over at once [1]
+    ("quadrature_time", REAL),  # over which they may last [tau]
     ("balance_error", REAL),  # error over throughput from which on it takes single steps [1]
     ("flight_parts", INT),  # into which it divides a step in flight [1]
     # last, so that what every step reads lies as close together as without it

@@ -218,7 +218,7 @@ ELEMENT: Final = record_type(  # that dry friction may hold at rest
     ("history", INT),  # of a pair [index]
 )
 
-RUBBING: Final = record_type(  # friction
+FRICTION_WORK: Final = record_type(  # friction
     ("count", INT),  # elements at rest [1]
     ("pairs", INT),  # how many of them are pairs, which come first [1]
     ("element", ELEMENT, (2 * SLOTS_HIGH + 2,)),
@@ -248,7 +248,7 @@ CONTACT: Final = record_type(  # of a population: the candidates of a pair
     ("high", REAL),  # place up to which they hold [pb]
     ("count", INT),  # [1]
     ("joined", INT),  # those that are joined [1]
-    ("flips", INT),  # asperities that have joined or detached at the present root [1]
+    ("asperity_switches", INT),  # asperities that have joined or detached at the present root [1]
     ("started", INT),  # 1 where the pair was there when the step began
     ("start_moves", INT),  # 1 where it was on the path of contact then
     ("start_gap", REAL),  # its gap then [sigma]
@@ -265,19 +265,19 @@ WORK: Final = record_type(
     ("lag_time", REAL),  # time to which the lags of joining are followed [tau]
     ("exposing", EXPOSING),  # of the exposures
     ("known", INT, (2 * SLOTS_HIGH,)),  # histories of the pairs that have been listed last [index]
-    ("notes", NOTES),  # forces of single pairs
+    ("pair_forces", NOTES),  # forces of single pairs
     (
         "shares",
         REAL,
         (2 * SLOTS_HIGH, MATERIALS),
     ),  # by tooth and place, of elastic contacts as last computed [1]
     ("settling", SETTLING, (2 * SLOTS_HIGH,)),  # of elastic contacts
-    ("unsettled", INT),  # 1 where no stable deflections have been found since it was set to 0
+    ("not_converged", INT),  # 1 where no stable deflections have been found since it was set to 0
     ("adams", ADAMS),  # of the integrator
     ("search", SEARCH),  # of the root search
     ("driver", DRIVER),
     ("piece", INT, (SCHEDULES,)),  # of a cubic schedule, last used; where the next search begins [index]
     ("torque_law", INT, (2,)),  # where the compiled torque law of either shaft lies; 0 without one [address]
     ("contact", CONTACT, (2 * SLOTS_HIGH,)),  # of a population
-    ("rubbing", RUBBING),  # of friction
+    ("friction", FRICTION_WORK),  # of friction
 )

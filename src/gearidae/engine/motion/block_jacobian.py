@@ -75,8 +75,8 @@ def assemble(m: Model, t: float, cj: float, y: Floats, store: Floats) -> None:
     size = _RHO + 2 * n + n * n
     for block in range(m.scene.histories):
         store[_FIRST + size * block] = 0.0
-    for i in range(m.work.notes.count):
-        noted = m.work.notes.pair[i]
+    for i in range(m.work.pair_forces.count):
+        noted = m.work.pair_forces.pair[i]
         start = _assemble_pair(m, noted.history, contact_length(m, noted.position), store)
         sign = 1.0 - 2.0 * flank_of_history(m, noted.history)
         on_pinion, on_gear = sign, sign * (1.0 + noted.relief)

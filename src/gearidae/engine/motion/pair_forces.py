@@ -12,17 +12,17 @@ import numpy as np
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import ELASTIC, FRICTION, SOLVER
-from gearidae.engine.elastic.elimination import (
-    FINISH,
-    PREDICT,
-    SETTLE,
-    following_slope,
-    pair_deflections,
-    settle_pair,
-)
 from gearidae.engine.elastic.limits import limit_of_nodes
 from gearidae.engine.elastic.nodes import node_force
 from gearidae.engine.elastic.rows import TANGENT, first_unknown, row
+from gearidae.engine.elastic.static_condensation import (
+    FINISH,
+    PREDICT,
+    SETTLE,
+    condense_pair,
+    following_slope,
+    pair_deflections,
+)
 from gearidae.engine.energy.radius import curvature_force
 from gearidae.engine.model.state import Floats, Model
 from gearidae.engine.pairs.attraction_force import attraction_force
@@ -47,8 +47,8 @@ from gearidae.engine.pairs.tooth_pairs import (
     pairs_felt,
     pairs_touching,
 )
+from gearidae.engine.population.contact_point import state_of_pair
 from gearidae.engine.population.forces import asperity_force
-from gearidae.engine.population.spots import state_of_pair
 
 
 @compiled(inline=True)
@@ -63,7 +63,7 @@ def contact_force(m: Model, t: float, y: Floats, pair: PairState, settling: bool
     note_shares(m, pair.k, pair.coast, pair.number, pair.place)
     length = contact_length(m, pair.place)
     if settling:
-        load, slope = settle_pair(m, pair.k, pair.known, t, y, pair.gap, pair.rate, length)
+        load, slope = condense_pair(m, pair.k, pair.known, t, y, pair.gap, pair.rate, length)
     else:
         load, slope = node_force(m, pair.k, pair.known, t, y, pair.gap, pair.rate, length)
     force = of_contact(load, slope)
@@ -86,7 +86,7 @@ def _with_limit(
 def force_of_pair(m: Model, t: float, y: Floats, pair: PairState, settling: bool) -> PairForce:
     """Force of a pair by all laws of the scene; `settling` as for `mesh_forces`."""
     force = contact_force(m, t, y, pair, settling)
-    if m.scene.radius_force != 0 and m.scene.population.flanks == 0:
+    if m.scene.curvature_force != 0 and m.scene.population.flanks == 0:
         force = both_forces(force, curvature_force(m, t, y, pair))
     if m.scene.attracts != 0:
         force = both_forces(force, attraction_force(m, y, pair))
@@ -110,7 +110,7 @@ def mesh_forces(m: Model, t: float, y: Floats, settling: bool) -> MeshForces:
         are those of the state, and the slopes are at fixed deflection.
     """
     total = NO_MESH_FORCES
-    m.work.notes.count = 0
+    m.work.pair_forces.count = 0
     full = with_deflections(m, y) if m.scene.nodes > 0 and settling else y
     reach = pairs_felt(m, y)
     for i in range(reach.total):
@@ -119,7 +119,7 @@ def mesh_forces(m: Model, t: float, y: Floats, settling: bool) -> MeshForces:
         if acts(m, pair):
             force = force_of_pair(m, t, full, pair, settling)
             if m.scene.noting != 0:
-                note_force(m, pair, force)
+                note_pair_force(m, pair, force)
             total = add_pair(m, total, pair, force)
     return total
 
@@ -147,8 +147,8 @@ def follow_slopes(m: Model, t: float, y: Floats, ahead: float, later: Floats) ->
     The deflections a short time `ahead` are written to the state `later`.
     """
     follow = np.empty(m.scene.nodes)
-    for i in range(m.work.notes.count):
-        noted = m.work.notes.pair[i]
+    for i in range(m.work.pair_forces.count):
+        noted = m.work.pair_forces.pair[i]
         k, length = noted.history, contact_length(m, noted.position)
         more = following_slope(m, k, y, length, follow)
         noted.slope += more
@@ -214,9 +214,9 @@ def _ask_for_deflections(m: Model, t: float, y: Floats, kind: int) -> None:
 
 
 @compiled(inline=True)
-def note_force(m: Model, pair: PairState, f: PairForce) -> None:
+def note_pair_force(m: Model, pair: PairState, f: PairForce) -> None:
     """Note a pair and its force."""
-    notes = m.work.notes
+    notes = m.work.pair_forces
     noted = notes.pair[notes.count]
     noted.history, noted.pair, noted.position = pair.k, pair.number, pair.place
     noted.gap, noted.gap_rate, noted.relief = pair.gap, pair.rate, pair.slope

@@ -196,8 +196,8 @@ def friction_at_gear(m: Model, t: float, y: Floats) -> tuple[float, float, tuple
     shafts = solve_shafts(m, t, y, turn, pinion, gear)
     loads = shafts.loads.pinion, shafts.loads.gear, math.hypot(shafts.pin[0], shafts.pin[1])
     friction = 0.0
-    for i in range(m.work.notes.count if m.scene.friction.flanks != 0 else 0):
-        noted = m.work.notes.pair[i]
+    for i in range(m.work.pair_forces.count if m.scene.friction.flanks != 0 else 0):
+        noted = m.work.pair_forces.pair[i]
         second = levers(m, noted.position)[1]
         friction += direction(m, noted) * noted.limit * second
         if m.state.hold == HELD_PAIR and noted.history == m.state.held_pair:

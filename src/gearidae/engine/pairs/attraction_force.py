@@ -28,7 +28,7 @@ def attraction_force(m: Model, y: Floats, pair: PairState) -> PairForce:
     inside = _inside(m, pair)
     pull, slope = attraction_of(m, pair.gap, shares_of(m, pair.coast, pair.number, inside))
     length, path, by_gap, by_place = contact_length(m, inside), 0.0, 0.0, 0.0
-    if m.scene.radius_force != 0 and is_on_path(m, pair.coast, pair.number):
+    if m.scene.curvature_force != 0 and is_on_path(m, pair.coast, pair.number):
         energies, slopes = attraction_energies(m, pair.gap)
         path, by_gap, by_place = slopes_along_path(m, pair.coast, pair.number, y[PHASE], energies, slopes)
     return PairForce(

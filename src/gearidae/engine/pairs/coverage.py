@@ -178,7 +178,7 @@ def path_position(m: Model, coast: int, pair: int, phase: float) -> float:
     return min(max(along, 0.0), m.scene.contact_ratio)
 
 
-class Pull(NamedTuple):
+class Attraction(NamedTuple):
     """Attraction of one material per unit length: force, its slope in the gap, and energy."""
 
     force: float
@@ -187,15 +187,15 @@ class Pull(NamedTuple):
 
 
 @compiled
-def attraction(m: Model, material: int, gap: float) -> Pull:
+def attraction(m: Model, material: int, gap: float) -> Attraction:
     """Attraction that a material of a pair would have if it covered everything, or with its share in the constant."""
     surface = m.scene.material[material]
     c, far = surface.attraction, m.scene.cutoff + surface.gap_offset
     if c == 0.0 or gap >= m.scene.cutoff:
-        return Pull(0.0, 0.0, 0.0)
+        return Attraction(0.0, 0.0, 0.0)
     h = gap + surface.gap_offset
     near = max(h, m.scene.attraction_floor)
     pull, last = c / (near * near * math.sqrt(near)), c / (far * far * math.sqrt(far))
     slope = 2.5 * pull / near if h > m.scene.attraction_floor else 0.0
     energy = -2.0 / 3.0 * pull * near + pull * (h - near)
-    return Pull(last - pull, slope, energy + 2.0 / 3.0 * last * far - last * (h - far))
+    return Attraction(last - pull, slope, energy + 2.0 / 3.0 * last * far - last * (h - far))

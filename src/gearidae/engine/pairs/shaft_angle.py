@@ -20,7 +20,7 @@ def angle_of_shaft(m: Model, shaft: int, u: float, phase: float) -> float:
     """
     travel = (m.state.turns + phase - m.state.first_place) / m.scene.phase_rate
     if shaft != LOAD:
-        travel += u - m.state.first_lead
+        travel += u - m.state.initial_lead
         if m.scene.error_count != 0:
             _, e, _, _ = static_error(m, u, phase)
             travel += e

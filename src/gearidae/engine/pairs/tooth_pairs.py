@@ -81,15 +81,15 @@ def pairs_touching(m: Model, y: Floats) -> Reach:
 @compiled(inline=True)
 def pairs_near(m: Model, y: Floats) -> Reach:
     """Pairs of the flanks that were near at the last accepted time."""
-    return _reach(m, y[PHASE], m.state.near[DRIVE] != 0, m.state.near[COAST] != 0)
+    return _reach(m, y[PHASE], m.state.flank_in_reach[DRIVE] != 0, m.state.flank_in_reach[COAST] != 0)
 
 
 @compiled(inline=True)
 def pairs_felt(m: Model, y: Floats) -> Reach:
     """Pairs of the flanks that touch at a state or were near at the last accepted time: any may have a force."""
     cutoff = m.scene.cutoff
-    drive = m.state.near[DRIVE] != 0 or nearest_gap(m, DRIVE, y) < cutoff
-    coast = m.state.near[COAST] != 0 or nearest_gap(m, COAST, y) < cutoff
+    drive = m.state.flank_in_reach[DRIVE] != 0 or nearest_gap(m, DRIVE, y) < cutoff
+    coast = m.state.flank_in_reach[COAST] != 0 or nearest_gap(m, COAST, y) < cutoff
     return _reach(m, y[PHASE], drive, coast)
 
 
@@ -136,7 +136,7 @@ def pairs_on_path(m: Model, coast: int) -> tuple[int, int]:
 
     The last two mesh marks decide, so that a step that ends at a mark sees the side it comes from.
     """
-    between = 0.5 * (m.state.mark_low + m.state.mark_high)
+    between = 0.5 * (m.state.mesh_mark_below + m.state.mesh_mark_above)
     lowest = between - m.scene.coast_phase if coast else between - m.scene.contact_ratio
     return math.ceil(lowest), math.floor(lowest + m.scene.contact_ratio)
 
@@ -263,7 +263,7 @@ def nearest_gap(m: Model, coast: int, y: Floats) -> float:
 @compiled
 def in_flight(m: Model) -> bool:
     """Whether both flanks are too far away for any pair to touch."""
-    return bool(m.state.near[DRIVE] == 0 and m.state.near[COAST] == 0)
+    return bool(m.state.flank_in_reach[DRIVE] == 0 and m.state.flank_in_reach[COAST] == 0)
 
 
 # -- forces ----------------------------------------------------------------------------------------------------------

@@ -14,6 +14,7 @@ from gearidae.engine.compiling import POPULATION
 from gearidae.engine.model.state import Model
 from gearidae.engine.pairs.coverage import fraction_of
 from gearidae.engine.pairs.tooth_pairs import flank_of_history
+from gearidae.engine.population.contact_point import Spot, place_of_arc, spot_at
 from gearidae.engine.population.layout import (
     ARC,
     BOUND,
@@ -29,7 +30,6 @@ from gearidae.engine.population.layout import (
     column,
     flank_of,
 )
-from gearidae.engine.population.spots import Spot, place_of_arc, spot_at
 
 LEVELS: Final = (1.0, 2.0)
 """Roughnesses above which asperities are listed once more: a sixth of them, and one in fifty."""

@@ -15,6 +15,7 @@ from gearidae.engine.compiling import POPULATION
 from gearidae.engine.model.state import Model
 from gearidae.engine.pairs.pair_force import NO_PAIR_FORCE, PairForce
 from gearidae.engine.pairs.tooth_pairs import PairState
+from gearidae.engine.population.contact_point import overlap_slopes, spot_at
 from gearidae.engine.population.layout import (
     ARC,
     HEIGHT,
@@ -28,7 +29,6 @@ from gearidae.engine.population.layout import (
     KIND,
     column,
 )
-from gearidae.engine.population.spots import overlap_slopes, spot_at
 
 
 class Sums(NamedTuple):

@@ -7,8 +7,8 @@ from gearidae.engine.compiling import POPULATION
 from gearidae.engine.model.state import Floats, Model
 from gearidae.engine.pairs.tooth_pairs import list_known
 from gearidae.engine.population.candidates import choose_beside, forget
+from gearidae.engine.population.contact_point import pair_of
 from gearidae.engine.population.layout import REMEMBERED, column, flank_of
-from gearidae.engine.population.spots import pair_of
 
 
 @compiled_once(POPULATION)

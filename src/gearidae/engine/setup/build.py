@@ -14,8 +14,6 @@ from gearidae.engine.elastic.layout import DEPTH_HIGH, ContactBounds
 from gearidae.engine.elastic.rows import scratch_size
 from gearidae.engine.events.histories import begin
 from gearidae.engine.events.mesh_marks import MARKS
-from gearidae.engine.followers.balance import open_balance
-from gearidae.engine.followers.exposures.bins import ROWS
 from gearidae.engine.model.scene_record import KEYED
 from gearidae.engine.model.state import (
     DRIVE,
@@ -32,6 +30,8 @@ from gearidae.engine.model.state import (
     blank_model,
 )
 from gearidae.engine.motion.static_solve import settle_nodes
+from gearidae.engine.observers.balance import open_balance
+from gearidae.engine.observers.exposures.bins import ROWS
 from gearidae.engine.pairs.tooth_pairs import contact_length, static_error
 from gearidae.engine.setup.build_contact import Nodes, add_attraction, add_contact, add_nodes, choose_model
 from gearidae.engine.setup.build_friction import add_friction
@@ -121,7 +121,7 @@ def _gear_problem(scene: GearScene, nodes: Nodes | None, begin: Start) -> Proble
         geometry.base_pitch / float(s.pinion_radius),
         geometry.base_pitch / float(s.gear_radius),
     )
-    s.radius_force = int(mesh.radius_force)
+    s.curvature_force = int(mesh.radius_force)
     _set_keyed(s, scene)
     _set_resistances(s, drive, load)
     grid = choose_model(s, scene, _gear_bounds(s, scene), nodes)
@@ -129,7 +129,7 @@ def _gear_problem(scene: GearScene, nodes: Nodes | None, begin: Start) -> Proble
     widest = math.sqrt(0.25 / float(s.sum_curvature))
     unit_length = math.sqrt(2.0 * geometry.base_pitch * sigma)
     if scene.contact.is_discrete:
-        s.radius_force = 1  # the asperities' own, which pays for all that changes along the path
+        s.curvature_force = 1  # the asperities' own, which pays for all that changes along the path
         add_population(s, tables, scene, float(1.0 / s.phase_rate), math.pi / gears.pinion_teeth)
     else:
         add_contact(s, tables, scene, gears.face_width, unit_length, widest)
@@ -157,7 +157,7 @@ def _gear_problem(scene: GearScene, nodes: Nodes | None, begin: Start) -> Proble
     u = float(s.clearance[DRIVE]) + relief - start.gap / sigma
     w = start.gear_speed * geometry.base_radius_gear / speed
     model.state.turns, model.state.first_place = whole, start.mesh_phase
-    model.state.first_lead = u + static_error(model, u, phase)[1]
+    model.state.initial_lead = u + static_error(model, u, phase)[1]
     skipped = {
         "static_error": int(not mesh.static_error),
         "harmonics": int(not drive.harmonic and not load.harmonic),

@@ -14,8 +14,8 @@ from gearidae.engine.torques.schedule import LEAST_CUBIC, fastest_schedule, pack
 from gearidae.scene import Drive, GearScene, Knots, Load, Scene
 from gearidae.torques import torque_law
 
-STRIDE = 6  # accepted steps near contact that the energy balance integrates over at once
-SPAN = 8.0  # over which they may last, over tau; and half a radian of the fastest torque at most
+QUADRATURE_STEPS = 6  # accepted steps near contact that the energy balance integrates over at once
+QUADRATURE_TIME = 8.0  # over which they may last, over tau; and half a radian of the fastest torque at most
 KNOT_SPACING = 1e-12  # what knots must be apart, over the time itself
 ROOT_LIMIT = 1_000  # more roots than this in close succession is chatter
 ROOT_SPACING = 1e-12  # what is close, over the time itself
@@ -105,8 +105,8 @@ def add_torques(s: Record, tables: Tables, scene: GearScene, begin: float) -> No
     # a torque that knows the motion vibrates with it, and is looked at in each step
     laws = scene.drive.law is not None or scene.load.law is not None
     knows_motion = laws or s.speed_gain != 0.0 or s.torque["takes_angle"].any()
-    s.balance_steps = 1 if knows_motion else STRIDE
-    s.balance_span = 1.0 / (1.0 / SPAN + 4.0 * math.pi * fastest * tau)
+    s.quadrature_steps = 1 if knows_motion else QUADRATURE_STEPS
+    s.quadrature_time = 1.0 / (1.0 / QUADRATURE_TIME + 4.0 * math.pi * fastest * tau)
 
 
 def _set_looks(s: Record, tables: Floats, scene: GearScene) -> None:

@@ -16,7 +16,6 @@ from typing import Final
 import numpy as np
 
 from gearidae.engine.elastic.kept_rows import KEPT_ROWS, kept_rows, restore_rows
-from gearidae.engine.followers.exposures.bins import exposures_of
 from gearidae.engine.model.state import (
     EMPTY,
     MOTION,
@@ -28,6 +27,7 @@ from gearidae.engine.model.state import (
     copied,
     empty_history,
 )
+from gearidae.engine.observers.exposures.bins import exposures_of
 from gearidae.engine.setup.checkpoint_checks import check, refused
 from gearidae.engine.setup.kept_asperities import asperity_words, joined_in, kept_asperities
 
@@ -143,9 +143,9 @@ def elastic_so_far(checkpoint: Floats) -> bool:
     return bool(_state_of(checkpoint).deep_exits >= 0)
 
 
-def light(checkpoint: Floats) -> bool:
+def rigid_again(checkpoint: Floats) -> bool:
     """Whether a checkpoint that `depth_of` has accepted stands where elastic contacts have been light for long."""
-    return bool(_state_of(checkpoint).light != 0)
+    return bool(_state_of(checkpoint).rigid_again != 0)
 
 
 def _state_of(checkpoint: Floats) -> Record:

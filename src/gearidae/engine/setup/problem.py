@@ -8,10 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from gearidae.engine.followers.exposures.bins import exposures_of
-from gearidae.engine.followers.extremes.units import extremes_in_si
-from gearidae.engine.followers.in_turn import look_at
-from gearidae.engine.model.located import Located
+from gearidae.engine.model.addresses import Addresses
 from gearidae.engine.model.state import (
     DRIVE,
     LOAD,
@@ -24,6 +21,9 @@ from gearidae.engine.model.state import (
     blank_work,
     copied,
 )
+from gearidae.engine.observers.dispatch import look_at
+from gearidae.engine.observers.exposures.bins import exposures_of
+from gearidae.engine.observers.extremes.units import extremes_in_si
 from gearidae.engine.pairs.tooth_pairs import set_all_branches
 from gearidae.engine.setup import checkpoint as checkpoints
 from gearidae.engine.setup.kept_asperities import restore_asperities
@@ -73,7 +73,7 @@ class Problem:
         Makes the same elastic problem with nodes laid out for deeper contacts, if there can be any.
     method : str
         ``run.method`` of the scene.
-    located : Located
+    addresses : Addresses
         Where the model lies in this process, for compiled functions that are called from Python.
     """
 
@@ -87,11 +87,11 @@ class Problem:
     elastic: Callable[[], Problem] | None = None
     deeper: Callable[[], Problem] | None = None
     method: str = "auto"
-    located: Located = field(init=False)
+    addresses: Addresses = field(init=False)
 
     def __post_init__(self) -> None:
         """Note where the model lies."""
-        self.located = Located(self.model)
+        self.addresses = Addresses(self.model)
 
     @property
     def time_unit(self) -> float:
@@ -174,14 +174,14 @@ class Problem:
         """
         m, exposures, balance, extremes = self.model, exposures_of(self.model), None, None
         before, exposed = (copied(m.state), copied(m.work)), exposures.copy()
-        look_at(self.located.place, time, state, rates)
+        look_at(self.addresses.place, time, state, rates)
         if m.scene.follow.balance:
             energies = in_si(ENERGY_SUMS, m.state.energy, m.scene) | in_si(
                 ENERGY_NOW, m.work.energy_now, m.scene
             )
             balance = EnergyBalance(energies, time=time * self.time_unit)
         if m.scene.follow.extremes:
-            extremes = extremes_in_si(m, self.located.place, time, state)
+            extremes = extremes_in_si(m, self.addresses.place, time, state)
         for record, copy in zip((m.state, m.work), before, strict=True):
             assign(record, copy)
         exposures[:] = exposed
@@ -250,6 +250,6 @@ class Problem:
         """Whether bodies have been elastic in the run of a checkpoint of this problem."""
         return self.depth > 0 or checkpoints.elastic_so_far(checkpoint)
 
-    def lightened(self, checkpoint: Floats) -> bool:
+    def rigid_again(self, checkpoint: Floats) -> bool:
         """Whether a checkpoint stands where the asperity model would do again."""
-        return checkpoints.light(checkpoint)
+        return checkpoints.rigid_again(checkpoint)

@@ -8,7 +8,7 @@ import numpy as np
 
 from gearidae.arrays import Ints
 from gearidae.compiled import compiled
-from gearidae.engine.model.located import model_at
+from gearidae.engine.model.addresses import model_at
 from gearidae.engine.model.state import Floats, Model
 from gearidae.engine.motion.block_jacobian import store_size
 from gearidae.engine.sundials import memory
@@ -63,7 +63,7 @@ def open_solver(
     handles : ndarray of int64, shape (HANDLES,)
         Filled in.
     place : int
-        Of the model, from `Located`, which must outlive the solver, as the vectors must.
+        Of the model, from `Addresses`, which must outlive the solver, as the vectors must.
     vectors : tuple of three ndarrays, shape (n,)
         State, rates and work space.
     most_failures : int

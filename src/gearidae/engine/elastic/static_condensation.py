@@ -70,10 +70,10 @@ def begin_deflections(m: Model, t: float, y: Floats) -> None:
 
 @compiled_once(ELASTIC, makes_arrays=True)
 def pair_deflections(m: Model, kind: int, t: float, y: Floats, pair: PairState, length: float) -> None:
-    """Do what `kind` says with a pair's deflections: `SETTLE`, `PREDICT` or `FINISH`; see `settle_pair`."""
+    """Do what `kind` says with a pair's deflections: `SETTLE`, `PREDICT` or `FINISH`; see `condense_pair`."""
     k, known, gap, rate = pair.k, pair.known, pair.gap, pair.rate
     if kind == SETTLE:
-        settle_pair(m, k, known, t, y, gap, rate, length)
+        condense_pair(m, k, known, t, y, gap, rate, length)
     elif kind == PREDICT:
         predict(m, k, known, t, y, gap, rate)
     else:
@@ -81,12 +81,12 @@ def pair_deflections(m: Model, kind: int, t: float, y: Floats, pair: PairState, 
 
 
 @compiled_once(ELASTIC, makes_arrays=True)
-def settle_pair(
+def condense_pair(
     m: Model, k: int, known: bool, t: float, y: Floats, gap: float, rate: float, length: float
 ) -> tuple[float, float]:
     """Solve for the deflections of a pair; its force and the force's slope in the gap while they follow, scaled.
 
-    Where there are no stable ones, ``m.work.unsettled`` is set.
+    Where there are no stable ones, ``m.work.not_converged`` is set.
 
     Parameters
     ----------
@@ -130,7 +130,7 @@ def settle_pair(
         deflection[i], tangent[i] = y[first + i], follow[i]
     settling.evaluated, settling.known, settling.time, settling.gap = 1, int(known), t, gap
     if not settled:
-        m.work.unsettled = 1
+        m.work.not_converged = 1
     return force, slope
 
 
@@ -153,10 +153,10 @@ def following_slope(m: Model, k: int, y: Floats, length: float, follow: Floats) 
 def _finish_pair(
     m: Model, k: int, known: bool, t: float, y: Floats, gap: float, rate: float, length: float
 ) -> None:
-    """Set a pair's deflections at the end of a step and note them; the parameters are those of `settle_pair`."""
+    """Set a pair's deflections at the end of a step and note them; the parameters are those of `condense_pair`."""
     settling = m.work.settling[k]
     if settling.evaluated == 0 or abs(settling.time - t) > ROUNDING * abs(t):
-        settle_pair(m, k, known, t, y, gap, rate, length)
+        condense_pair(m, k, known, t, y, gap, rate, length)
     first, deflection, tangent = first_unknown(m, k), row(m, k, DEFLECTION), row(m, k, TANGENT)
     last, last_tangent = row(m, k, LAST), row(m, k, LAST_TANGENT)
     before, before_tangent = row(m, k, BEFORE), row(m, k, BEFORE_TANGENT)

@@ -53,7 +53,7 @@ def force_of_motion(m: Model, t: float, y: Floats, yp: Floats) -> float:
 @compiled
 def _force_with_friction(m: Model, t: float, y: Floats) -> float:
     """Force by the contact law, which the losses by friction have just asked at the same time."""
-    r = m.work.rubbing
+    r = m.work.friction
     return float(r.force) if m.scene.follow.friction != 0 and r.time == t else float(force_of_law(m, t, y))
 
 

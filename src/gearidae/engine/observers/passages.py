@@ -14,11 +14,11 @@ import numpy as np
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.events.mesh_marks import MARKS
-from gearidae.engine.followers.balance import note_changes
-from gearidae.engine.followers.extremes.forces import force_of_law, note_since
-from gearidae.engine.model.located import numbers_of
+from gearidae.engine.model.addresses import numbers_of
 from gearidae.engine.model.record_types import Record
 from gearidae.engine.model.state import STATE, WORK, Floats, Model
+from gearidae.engine.observers.balance import note_changes
+from gearidae.engine.observers.extremes.forces import force_of_law, note_since
 from gearidae.records import EVENT, EventKind
 from gearidae.records.passages import CHANGES, COLUMNS, PASSAGE, SUMS
 from gearidae.records.quantity import Quantity

@@ -91,7 +91,7 @@ def note_addresses(m: Model, out: NDArray[np.int64]) -> None:
     out[5], out[6] = m.rows.ctypes.data, m.rows.size
 
 
-class Located:
+class Addresses:
     """Where a model of this process lies; keeps it alive.
 
     Attributes

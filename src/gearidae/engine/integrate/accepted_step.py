@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.events.asperity_events import flip_asperities, record_flips
+from gearidae.engine.events.asperity_events import record_switches, switch_asperities
 from gearidae.engine.events.events import ROOT, STOP, chatters, handle_mesh
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.pair_events import find_event, take_event
 from gearidae.engine.events.record import EVENTS_AT_ONCE
 from gearidae.engine.events.sliding import follow_creeping, follow_sliding
 from gearidae.engine.events.stops import keeps_checkpoint, next_stop, pass_knot, stop_guard
-from gearidae.engine.followers import in_turn as followers
-from gearidae.engine.followers.passages import PASSAGES_AT_ONCE, write_passages
 from gearidae.engine.integrate.driver import (
     BOUND_EXCEEDED,
     CHATTER,
@@ -26,6 +24,8 @@ from gearidae.engine.integrate.start import PHASE_HIGH, rebase, set_rates
 from gearidae.engine.integrate.step_control import change_wanted
 from gearidae.engine.model.record_types import FREE
 from gearidae.engine.model.state import PHASE, Floats, Model
+from gearidae.engine.observers import dispatch as observers
+from gearidae.engine.observers.passages import PASSAGES_AT_ONCE, write_passages
 from gearidae.engine.pairs.tooth_pairs import flank_of_history, in_flight, list_known
 
 
@@ -62,7 +62,7 @@ def finish_step(
     """
     driver, t, events = m.work.driver, m.work.driver.time, out.events
     accept(m, t, y)
-    followers.step(m, t, y, yp, (flag != 0, flag == ROOT), between)
+    observers.step(m, t, y, yp, (flag != 0, flag == ROOT), between)
     if m.state.bound_exceeded != 0:
         driver.error = BOUND_EXCEEDED
     if in_flight(m):
@@ -72,7 +72,7 @@ def finish_step(
         afresh |= handle(m, t, y, yp, out)
         if m.scene.stop != 0 and stop_guard(m, t, y) <= 0.0:
             driver.done = 1
-        if m.state.light != 0 and driver.done == 0 and driver.error == 0:
+        if m.state.rigid_again != 0 and driver.done == 0 and driver.error == 0:
             driver.error = LIGHT
     else:
         driver.step, driver.step_end = t - driver.step_end, t
@@ -90,7 +90,7 @@ def finish_step(
         driver.events, stopped = follow_creeping(m, t, y, events, driver.events)
         afresh |= stopped
     if driver.done != 0 or driver.error != 0:
-        followers.finish(m, t, y, yp)
+        observers.finish(m, t, y, yp)
     return afresh
 
 
@@ -108,20 +108,20 @@ def handle(m: Model, t: float, y: Floats, yp: Floats, out: Output) -> bool:
         event = find_event(m, y, flank_of_history(m, k), m.state.history[k].pair, k)
         if event.touches or event.stretches or event.turns:
             joined |= event.turns and m.state.history[k].direction < 0.0
-            followers.event(m, t, y, yp, event)
+            observers.event(m, t, y, yp, event)
             count = take_event(m, t, y, event, events, count)
     if m.scene.population.flanks != 0:
-        if flip_asperities(m, y):
+        if switch_asperities(m, y):
             restart = True
-            followers.flips(m, y)
-        count, too_many = record_flips(m, t, y, events, count)
+            observers.asperity_switches(m, y)
+        count, too_many = record_switches(m, t, y, events, count)
         if too_many:
             driver.error = MANY_EVENTS
     if m.scene.friction.on != 0:
         count, jumped = follow_sliding(m, t, y, events, count)
         restart |= jumped
     driver.events = count
-    followers.resume(m, t, y, crossed, joined)
+    observers.resume(m, t, y, crossed, joined)
     if crossed and m.scene.follow.passages != 0:
         driver.passages = write_passages(m, t, y, events, (first, count), out.passages, driver.passages)
     if chatters(m, t):
@@ -131,16 +131,16 @@ def handle(m: Model, t: float, y: Floats, yp: Floats, out: Output) -> bool:
 
 @compiled_once(SOLVER)
 def prepare_start(m: Model, t: float, y: Floats, yp: Floats) -> None:
-    """Set consistent rates, and what the followers of a run know of the time before, for a start at t."""
+    """Set consistent rates, and what the observers of a run know of the time before, for a start at t."""
     begin_rest(m, t, y)
     set_rates(m, t, y, yp)
-    followers.begin(m, t, y, yp)
+    observers.begin(m, t, y, yp)
     m.work.driver.step_end, m.work.driver.step = t, 0.0
 
 
 @compiled
 def prepare_restart(m: Model, y: Floats, yp: Floats) -> None:
-    """Bring the followers up to the time reached and move whole pitches out of the phase, before a start from here."""
-    followers.finish(m, m.work.driver.time, y, yp)
+    """Bring the observers up to the time reached and move whole pitches out of the phase, before a start from here."""
+    observers.finish(m, m.work.driver.time, y, yp)
     rebase(m, y)
     m.state.progress.restarts += 1

@@ -12,13 +12,6 @@ import numpy as np
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import FRICTION
-from gearidae.engine.followers.exposures.rubbing import (
-    add_rubbing,
-    begin_powers,
-    divide_rubbing,
-    keeps_rubbing,
-    note_power,
-)
 from gearidae.engine.formulas import adams
 from gearidae.engine.formulas.quadrature import error_estimate, integral, integral_with_middle
 from gearidae.engine.friction.forces import Shafts, solve_shafts
@@ -28,6 +21,13 @@ from gearidae.engine.model.record_types import HELD_PAIR
 from gearidae.engine.model.state import COAST, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.pair_forces import follow_slopes, is_eliminated, set_deflections
 from gearidae.engine.motion.shafts import forces_at_shafts
+from gearidae.engine.observers.exposures.friction_work import (
+    add_friction_work,
+    begin_powers,
+    divide_friction_work,
+    keeps_friction_work,
+    note_power,
+)
 from gearidae.engine.pairs.tooth_pairs import flank_of_history, static_error
 
 _POWERS: Final = 8
@@ -41,7 +41,7 @@ _OUTER: Final = 0.5 * math.sqrt(0.6)
 
 
 @compiled_once(FRICTION)
-def note_rubbing(m: Model, t: float, y: Floats) -> None:
+def note_friction(m: Model, t: float, y: Floats) -> None:
     """Note the powers of friction and their rates, with the present directions of slip."""
     rolls = m.scene.friction.joints != 0 and m.state.hold == HELD_PAIR
     ahead = _loads_ahead(m, t, y) if rolls else Loads(0.0, 0.0)
@@ -50,14 +50,14 @@ def note_rubbing(m: Model, t: float, y: Floats) -> None:
         follow_slopes(m, t, y, 0.0, y)
         set_limits(m, t, y[W])
     shafts = solve_shafts(m, t, y, turn, pinion, gear)
-    r = m.work.rubbing
+    r = m.work.friction
     r.time, r.force = t, shafts.mesh.drive - shafts.mesh.coast + m.scene.damping * y[V]
     for which in range(_POWERS):
         r.power[which] = r.power_rate[which] = 0.0
     drive = coast = drive_friction = coast_friction = 0.0  # rates
     begin_powers(m)
-    for i in range(m.work.notes.count):
-        noted = m.work.notes.pair[i]
+    for i in range(m.work.pair_forces.count):
+        noted = m.work.pair_forces.pair[i]
         flank = flank_of_history(m, noted.history)
         first, second = levers(m, noted.position)
         slip = direction(m, noted) if m.scene.friction.flanks != 0 else 0.0
@@ -123,8 +123,8 @@ def _note_joints(
 @compiled(inline=True)
 def _note(m: Model, which: int, force: float, force_rate: float, speed: float, acceleration: float) -> None:
     """Note a power and its rate."""
-    m.work.rubbing.power[which] = force * speed
-    m.work.rubbing.power_rate[which] = force_rate * speed + force * acceleration
+    m.work.friction.power[which] = force * speed
+    m.work.friction.power_rate[which] = force_rate * speed + force * acceleration
 
 
 @compiled(makes_arrays=True)
@@ -156,7 +156,7 @@ def _load_rate(m: Model, shafts: Shafts, rate: Mesh, force_rate: tuple[float, fl
 
 
 @compiled_once(FRICTION)
-def book_rubbing(m: Model, t: float, y: Floats, root: bool, between: Floats, rates: Floats) -> None:
+def accumulate_friction(m: Model, t: float, y: Floats, root: bool, between: Floats, rates: Floats) -> None:
     """Add the losses since the last call, and note the powers here.
 
     The corrected trapezoidal rule is extrapolated with the powers in the middle, where the formula of the step gives
@@ -174,15 +174,15 @@ def book_rubbing(m: Model, t: float, y: Floats, root: bool, between: Floats, rat
     between, rates : ndarray, shape (n,)
         Work space.
     """
-    r, a = m.work.rubbing, m.work.adams
+    r, a = m.work.friction, m.work.adams
     h, start = t - r.time, r.time
     if h == 0.0:
         return
-    first, first_rate = _copied(m.work.rubbing.power), _copied(m.work.rubbing.power_rate)
+    first, first_rate = _copied(m.work.friction.power), _copied(m.work.friction.power_rate)
     bends = root and (m.scene.population.flanks != 0 or has_hubs(m))
     if bends and a.order_used > 0:
-        _book_inside(m, start, h, between, rates)
-        note_rubbing(m, t, y)
+        _accumulate_inside(m, start, h, between, rates)
+        note_friction(m, t, y)
         return
     middle, halved = first, a.order_used > 0
     # weights of the rule, of powers and rates at both ends
@@ -191,15 +191,15 @@ def book_rubbing(m: Model, t: float, y: Floats, root: bool, between: Floats, rat
         begin, end, first_bend, last_bend = 7.0 / 30.0 * h, 7.0 / 30.0 * h, h * h / 60.0, -h * h / 60.0
     elif bends:  # of a parabola
         begin, end, first_bend, last_bend = 2.0 / 3.0 * h, h / 3.0, h * h / 6.0, 0.0
-    add_rubbing(m, begin, first_bend)
+    add_friction_work(m, begin, first_bend)
     if halved:
         _note_within(m, start + 0.5 * h, between, rates)
-        add_rubbing(m, 16.0 / 30.0 * h, 0.0)
-        middle = _copied(m.work.rubbing.power)
-    note_rubbing(m, t, y)
-    add_rubbing(m, end, last_bend)
-    if keeps_rubbing(m):
-        divide_rubbing(m, between if halved else y)
+        add_friction_work(m, 16.0 / 30.0 * h, 0.0)
+        middle = _copied(m.work.friction.power)
+    note_friction(m, t, y)
+    add_friction_work(m, end, last_bend)
+    if keeps_friction_work(m):
+        divide_friction_work(m, between if halved else y)
     for i in range(_POWERS):
         last, last_rate = r.power[i], r.power_rate[i]
         rate = 2.0 * (last - first[i]) / h - first_rate[i] if bends else last_rate  # of a parabola
@@ -208,7 +208,7 @@ def book_rubbing(m: Model, t: float, y: Floats, root: bool, between: Floats, rat
         if halved:
             rough, loss = loss, integral_with_middle(h, first[i], middle[i], last, first_rate[i], last_rate)
             error = min(error, abs(loss - rough) / 16.0)
-        _book(m, i, loss, error)
+        _accumulate(m, i, loss, error)
 
 
 @compiled
@@ -217,25 +217,25 @@ def _note_within(m: Model, t: float, between: Floats, rates: Floats) -> None:
     adams.between(m.work.adams, t, between, rates)
     if is_eliminated(m):
         set_deflections(m, t, between, False)
-    note_rubbing(m, t, between)
+    note_friction(m, t, between)
 
 
 @compiled
-def _book_inside(m: Model, start: float, h: float, between: Floats, rates: Floats) -> None:
+def _accumulate_inside(m: Model, start: float, h: float, between: Floats, rates: Floats) -> None:
     """Add the losses of an interval from the powers at three points inside it, by the Gaussian rule."""
     for point in range(3):
         then = start + (0.5 + (point - 1) * _OUTER) * h
         _note_within(m, then, between, rates)
         weight = (8.0 if point == 1 else 5.0) / 18.0 * h
         for i in range(_POWERS):
-            _book(m, i, weight * m.work.rubbing.power[i], 0.0)
-        add_rubbing(m, weight, 0.0)
-        if keeps_rubbing(m):
-            divide_rubbing(m, between)
+            _accumulate(m, i, weight * m.work.friction.power[i], 0.0)
+        add_friction_work(m, weight, 0.0)
+        if keeps_friction_work(m):
+            divide_friction_work(m, between)
 
 
 @compiled(inline=True)
-def _book(m: Model, i: int, loss: float, error: float) -> None:
+def _accumulate(m: Model, i: int, loss: float, error: float) -> None:
     """Add a loss of the i-th power, and its error."""
     e = m.state.energy
     if i >= _LOSSES:

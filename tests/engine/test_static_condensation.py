@@ -6,10 +6,10 @@ import pytest
 import gearidae as gd
 from gearidae.engine import solve
 from gearidae.engine.elastic import newton_step as newton
-from gearidae.engine.elastic.elimination import begin_deflections, predict, settle_pair
 from gearidae.engine.elastic.newton_step import FOLLOW, STEP, equation_space, influence_space, newton_step
 from gearidae.engine.elastic.nodes import influence, node_force, stiffness_matrix
 from gearidae.engine.elastic.rows import JOINED, PRESSURE, first_unknown, row_of
+from gearidae.engine.elastic.static_condensation import begin_deflections, condense_pair, predict
 from gearidae.engine.model.state import U, V
 from gearidae.engine.motion.pair_forces import finish_deflections, mesh_forces, set_deflections
 from gearidae.engine.motion.static_solve import settle_nodes
@@ -52,7 +52,7 @@ def test_deflections_satisfy_their_equations(softness):
     y = known.copy()
     y[4:] = 0.0
     set_deflections(m, 0.0, y, False)
-    assert m.work.unsettled == 0
+    assert m.work.not_converged == 0
     # what the last step leaves is of second order in its length, sqrt(0.01 rtol), times the curvature of the pressure
     np.testing.assert_allclose(y[4:], known[4:], rtol=0, atol=10 * 0.01 * RTOL)
 
@@ -136,9 +136,9 @@ def test_where_the_determinant_is_not_positive_nothing_is_stable():
     powers = slice(int(m.scene.influence_at), int(m.scene.influence_at + m.scene.orders * n * n))
     m.tables[powers] *= 1.5 / lowest
     y[first : first + n] = 0.0
-    m.work.unsettled = 0
-    settle_pair(m, k, True, 0.0, y, gap, 0.1, length_of(m))
-    assert m.work.unsettled == 1
+    m.work.not_converged = 0
+    condense_pair(m, k, True, 0.0, y, gap, 0.1, length_of(m))
+    assert m.work.not_converged == 1
 
 
 def test_prediction_is_of_fourth_order():

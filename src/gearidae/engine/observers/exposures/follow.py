@@ -9,7 +9,7 @@ For both flanks of every tooth of the pinion and every place along the path of c
   place, as if the material covered everything);
 - sliding work :math:`\int W |v_s| dt` of contacts that push, :math:`v_s` being the sum of both gears' angular speeds
   times the distance from the pitch point. It is integrated over one to six steps at once
-  (`gearidae.engine.followers.exposures.sliding`), and to every onset and separation;
+  (`gearidae.engine.observers.exposures.sliding`), and to every onset and separation;
 - the largest pressure, :math:`W / (L \sqrt{2 R \sigma})`, at the same times, at turning points, and where a contact
   passes from one place to the next.
 
@@ -17,9 +17,9 @@ An elastic contact is looked at as often as the energy balance closes an interva
 to the next in such an interval, what it has joined is divided by its gap there, on the cubic of the gap; of elastic
 contacts, and of sliding work, in proportion to the way. Contacts on the tip relief count at the end of the path.
 
-Asperities of a population are counted one by one, each at its own place (`contacts.add_flips`); sliding
+Asperities of a population are counted one by one, each at its own place (`contacts.add_asperity_switches`); sliding
 work and pressure are those of the whole pair, where it touches. The work of friction is a fifth sum, of flanks that
-have friction (module `rubbing` of this package).
+have friction (module `friction_work` of this package).
 """
 
 from __future__ import annotations
@@ -29,8 +29,10 @@ import math
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import EXPOSURES
 from gearidae.engine.events.pair_events import PairEvent
-from gearidae.engine.followers.exposures.bins import bin_at, row_of, way_to_edge
-from gearidae.engine.followers.exposures.contacts import (
+from gearidae.engine.model.state import MATERIALS, PHASE, Floats, Model, U, V, W
+from gearidae.engine.motion.pair_forces import force_of_pair, forces_at
+from gearidae.engine.observers.exposures.bins import bin_at, row_of, way_to_edge
+from gearidae.engine.observers.exposures.contacts import (
     adds_often,
     begin_contacts,
     join,
@@ -40,7 +42,7 @@ from gearidae.engine.followers.exposures.contacts import (
     see_pressure,
     turn_to_closing,
 )
-from gearidae.engine.followers.exposures.sliding import (
+from gearidae.engine.observers.exposures.sliding import (
     add_sliding,
     begin_intervals,
     next_interval,
@@ -49,8 +51,6 @@ from gearidae.engine.followers.exposures.sliding import (
     start_with_one_step,
     time_to_zero,
 )
-from gearidae.engine.model.state import MATERIALS, PHASE, Floats, Model, U, V, W
-from gearidae.engine.motion.pair_forces import force_of_pair, forces_at
 from gearidae.engine.pairs.coverage import path_position
 from gearidae.engine.pairs.tooth_pairs import PairState, flank_of_history, pair_gap
 
@@ -64,8 +64,8 @@ def begin(m: Model, t: float, y: Floats, yp: Floats) -> None:
     for k in range(m.scene.histories):
         m.work.exposing.pair[k].known = 0
     forces_at(m, t, y)
-    for i in range(m.work.notes.count):
-        noted = m.work.notes.pair[i]
+    for i in range(m.work.pair_forces.count):
+        noted = m.work.pair_forces.pair[i]
         k = noted.history
         if m.state.history[k].pair != noted.pair:
             continue
@@ -99,8 +99,8 @@ def _follow(m: Model, t: float, y: Floats, yp: Floats, whole: bool) -> None:
     sliding = sliding_speeds(m, y, yp[V], yp[W])
     to_zero, way = math.inf, math.inf
     ends = whole or m.scene.nodes > 0 or exposing.steps >= exposing.steps_per_interval
-    for i in range(m.work.notes.count):
-        noted = m.work.notes.pair[i]
+    for i in range(m.work.pair_forces.count):
+        noted = m.work.pair_forces.pair[i]
         k = noted.history
         if m.state.history[k].pair != noted.pair:
             continue

@@ -12,17 +12,17 @@ from __future__ import annotations
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import FRICTION
-from gearidae.engine.followers.exposures.bins import ROWS, bin_at, row_of
 from gearidae.engine.model.state import PHASE, Floats, Model
+from gearidae.engine.observers.exposures.bins import ROWS, bin_at, row_of
 from gearidae.engine.pairs.coverage import path_position
 from gearidae.engine.pairs.tooth_pairs import flank_of_history
+from gearidae.engine.population.contact_point import pair_now, place_of_arc, spot_at
 from gearidae.engine.population.forces import candidate_limit, candidate_load
 from gearidae.engine.population.layout import ARC, HEIGHT, JOINED, KIND, column
-from gearidae.engine.population.spots import pair_now, place_of_arc, spot_at
 
 
 @compiled(inline=True)
-def keeps_rubbing(m: Model) -> bool:
+def keeps_friction_work(m: Model) -> bool:
     """Whether the work of friction is kept: where there are exposures, and flanks have friction."""
     return bool(m.scene.bins > 0 and m.scene.exposure_rows > ROWS.friction)
 
@@ -30,7 +30,7 @@ def keeps_rubbing(m: Model) -> bool:
 @compiled(inline=True)
 def begin_powers(m: Model) -> None:
     """Begin to note the powers of friction of all pairs at a time, if they are kept."""
-    for k in range(m.scene.histories if keeps_rubbing(m) else 0):
+    for k in range(m.scene.histories if keeps_friction_work(m) else 0):
         exposure = m.work.exposing.pair[k]
         exposure.friction = exposure.friction_rate = 0.0
 
@@ -43,15 +43,15 @@ def note_power(m: Model, k: int, power: float, rate: float) -> None:
 
 
 @compiled(inline=True)
-def add_rubbing(m: Model, weight: float, rate_weight: float) -> None:
+def add_friction_work(m: Model, weight: float, rate_weight: float) -> None:
     """Add to the work of a step the powers of friction that have been noted, and their rates, with weights."""
-    for k in range(m.scene.histories if keeps_rubbing(m) else 0):
+    for k in range(m.scene.histories if keeps_friction_work(m) else 0):
         exposure = m.work.exposing.pair[k]
         exposure.rubbed += weight * exposure.friction + rate_weight * exposure.friction_rate
 
 
 @compiled_once(FRICTION)
-def divide_rubbing(m: Model, y: Floats) -> None:
+def divide_friction_work(m: Model, y: Floats) -> None:
     """Add the work of a step to the places where pairs rub at a state."""
     for k in range(m.scene.histories):
         exposure, pair = m.work.exposing.pair[k], int(m.state.history[k].pair)

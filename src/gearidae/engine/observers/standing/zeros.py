@@ -12,9 +12,9 @@ from typing import Final
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.followers.standing.free_gears import follow_free
 from gearidae.engine.model.checkpoint_record import HIGH, MOST_SLOW, MOST_ZEROS, SPARE
 from gearidae.engine.model.state import DRIVE, PHASE, Floats, Model, Record, U
+from gearidae.engine.observers.standing.free_gears import follow_free
 from gearidae.engine.pairs.tooth_pairs import static_error
 from gearidae.records.standing import HALF_PITCH, SHARE, stands
 
@@ -39,7 +39,7 @@ def make_zero(m: Model, i: int, t: float, position: float, y: Floats, at_start: 
     z.position = z.lowest = z.highest = position
     z.lead = 0.0
     if m.scene.torque[DRIVE].takes_angle != 0:
-        z.lead = y[U] - m.state.first_lead
+        z.lead = y[U] - m.state.initial_lead
         if m.scene.error_count != 0:
             z.lead += static_error(m, y[U], y[PHASE])[1]
     z.exits = m.state.extremes.mesh_exits

@@ -14,15 +14,15 @@ from typing import Final
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.followers.standing.free_torques import (
+from gearidae.engine.formulas.interpolation import cubic
+from gearidae.engine.friction.forces import NO_FORCE
+from gearidae.engine.model.state import DRIVE, LOAD, Model
+from gearidae.engine.observers.standing.free_torques import (
     enter_segments,
     excess,
     free_torque,
     largest_excess,
 )
-from gearidae.engine.formulas.interpolation import cubic
-from gearidae.engine.friction.forces import NO_FORCE
-from gearidae.engine.model.state import DRIVE, LOAD, Model
 from gearidae.engine.torques.schedule import straight_until
 
 TOLERANCE: Final = 1e-5
@@ -66,7 +66,7 @@ def _follow_piece(m: Model, i: int, t: float, stop: float, enough: float) -> flo
                 after = _certain_rest(m, i, t, stop)
                 if after == t:
                     after = min(max(_rests_until(m, i, x, t, min(stop, t + longest)), t + least), stop)
-                _book_drive(m, i, t, after)
+                _accumulate_drive(m, i, t, after)
                 t = after
                 continue
             sign = math.copysign(1.0, push)
@@ -85,7 +85,7 @@ def _follow_piece(m: Model, i: int, t: float, stop: float, enough: float) -> flo
             after = min(max(t + share * h, t + least), stop)
             rate = m.scene.phase_rate
             new_x, new_w = cubic(share, h, x, rate * w, new_x, rate * new_w), 0.0
-        _book_drive(m, i, t, after)
+        _accumulate_drive(m, i, t, after)
         t, x, w = after, new_x, new_w
         z.free_farthest = max(z.free_farthest, abs(x))
         h *= min(5.0, 0.8 * max(error, 1e-6) ** (-1.0 / 3.0))
@@ -199,7 +199,7 @@ def _overcomes(m: Model, i: int, x: float, t: float) -> float:
 
 
 @compiled
-def _book_drive(m: Model, i: int, t: float, after: float) -> None:
+def _accumulate_drive(m: Model, i: int, t: float, after: float) -> None:
     """Note by how much and how long the drive exceeds the dry load of the gear that stands."""
     z = m.state.standing.zero[i]
     first, last = excess(m, i, t) - NO_FORCE, excess(m, i, after) - NO_FORCE

@@ -7,12 +7,12 @@ a number. Between compiled functions a model costs nothing.
 from __future__ import annotations
 
 from gearidae.compiled import compiled
-from gearidae.engine.events.asperity_events import first_dip, note_step_start
+from gearidae.engine.events.asperity_events import first_grazing_minimum, note_step_start
 from gearidae.engine.events.events import guard
+from gearidae.engine.integrate.accepted_step import finish_step
 from gearidae.engine.integrate.driver import Output
-from gearidae.engine.integrate.epilogue import finish_step
 from gearidae.engine.integrate.resting import rest_step
-from gearidae.engine.model.located import model_at
+from gearidae.engine.model.addresses import model_at
 from gearidae.engine.model.state import Floats
 from gearidae.engine.motion.observe import observe
 from gearidae.engine.motion.residual import jacobian, residual
@@ -45,11 +45,11 @@ def note_step_start_at(place: int, t: float, y: Floats) -> None:
 
 
 @compiled
-def first_dip_at(place: int, t: float, y: Floats, h: float) -> float:
-    """`gearidae.engine.events.asperity_events.first_dip`, with the guard asked at the end of the step."""
+def first_grazing_minimum_at(place: int, t: float, y: Floats, h: float) -> float:
+    """`gearidae.engine.events.asperity_events.first_grazing_minimum`, with the guard asked at the end of the step."""
     m = model_at(place)
     guard(m, t, y)
-    return first_dip(m, y, h)
+    return first_grazing_minimum(m, y, h)
 
 
 @compiled
@@ -62,7 +62,7 @@ def observe_at(place: int, t: float, y: Floats, row: Floats) -> None:
 def finish_step_at(
     place: int, y: Floats, yp: Floats, between: tuple[Floats, Floats], flag: int, out: Output
 ) -> bool:
-    """`gearidae.engine.integrate.epilogue.finish_step`."""
+    """`gearidae.engine.integrate.accepted_step.finish_step`."""
     return finish_step(model_at(place), y, yp, between, flag, out)
 
 

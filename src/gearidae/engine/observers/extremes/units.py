@@ -7,9 +7,9 @@ from array import array
 from types import SimpleNamespace
 from typing import Any
 
-from gearidae.engine.followers.exposures.bins import ROWS, exposure_table
-from gearidae.engine.followers.standing.units import standing_now
 from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, V, W, plain
+from gearidae.engine.observers.exposures.bins import ROWS, exposure_table
+from gearidae.engine.observers.standing.units import standing_now
 from gearidae.records import Extremes
 from gearidae.records.extremes import ASPERITY_COUNTS, FORCE_EXTREMES, SPEED_EXTREMES, SPEEDS_NOW
 from gearidae.records.quantity import in_si
@@ -24,7 +24,7 @@ def extremes_in_si(m: Model, place: int, time: float, y: Floats) -> Extremes:
     m : Model
         Its extremes include the state at `time`.
     place : int
-        Of the model, from `gearidae.engine.model.located.Located`.
+        Of the model, from `gearidae.engine.model.addresses.Addresses`.
     time : float
         Reached, over tau.
     y : ndarray, shape (n,)

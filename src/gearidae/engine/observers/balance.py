@@ -40,7 +40,6 @@ from gearidae.engine.energy.radius import radius_power
 from gearidae.engine.events.mesh_marks import crossed_mark
 from gearidae.engine.events.pair_events import newly_stretched
 from gearidae.engine.events.sliding import dry_guard
-from gearidae.engine.followers import joining
 from gearidae.engine.formulas import adams
 from gearidae.engine.formulas.quadrature import (
     Ends,
@@ -51,6 +50,7 @@ from gearidae.engine.formulas.quadrature import (
     torque_work,
 )
 from gearidae.engine.model.state import DRIVE, LOAD, MATERIALS, PHASE, Floats, Model, U, V, W
+from gearidae.engine.observers import joining
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.pairs.squeeze_film import film_loss
 from gearidae.engine.pairs.tooth_pairs import (
@@ -142,7 +142,7 @@ def _can_wait(m: Model, t: float, y: Floats) -> bool:
         return False
     if m.scene.population.flanks != 0 or m.scene.friction.rubs != 0:  # forces jump
         return False
-    if in_flight(m) or t - m.work.quadrature.time > m.scene.balance_span:
+    if in_flight(m) or t - m.work.quadrature.time > m.scene.quadrature_time:
         return False
     if crossed_mark(m, y) or (m.scene.dry != 0 and dry_guard(m, t, y) <= 0.0):
         return False
@@ -204,9 +204,9 @@ def _accumulate(m: Model, t: float, y: Floats, yp: Floats, now: bool) -> None:
     w, w_rate = y[W], yp[W]
     joining.step(m, t, y, w_rate)
     gear = y[PHASE] / m.scene.phase_rate
-    speed, exchange, error = _book_drive(m, h, t, y, yp)
+    speed, exchange, error = _accumulate_drive(m, h, t, y, yp)
     if m.scene.dry != 0:
-        dry, more = _book_dry(m, h, t, gear - q.gear_travel, y, w_rate)
+        dry, more = _accumulate_dry(m, h, t, gear - q.gear_travel, y, w_rate)
         error += more
         exchange += dry
     q.gear_travel, q.gear_speed, q.gear_acceleration = gear, w, w_rate
@@ -217,11 +217,11 @@ def _accumulate(m: Model, t: float, y: Floats, yp: Floats, now: bool) -> None:
     q.length_work = 0.0
     q.radius_power, q.radius_power_rate = power, rate
     e.radius_work += radius
-    _book_kinetic(m, energy_of_speeds(m, speed, w), exchange + abs(radius))
+    _accumulate_kinetic(m, energy_of_speeds(m, speed, w), exchange + abs(radius))
 
 
 @compiled(inline=True)
-def _book_kinetic(m: Model, kinetic: float, exchanged: float) -> None:
+def _accumulate_kinetic(m: Model, kinetic: float, exchanged: float) -> None:
     """Note the kinetic energy at the end of an interval, and what has been exchanged in it besides its change."""
     e, q = m.state.energy, m.work.quadrature
     e.throughput += exchanged + abs(kinetic - q.kinetic)
@@ -230,7 +230,7 @@ def _book_kinetic(m: Model, kinetic: float, exchanged: float) -> None:
 
 
 @compiled(inline=True)
-def _book_drive(m: Model, h: float, t: float, y: Floats, yp: Floats) -> tuple[float, float, float]:
+def _accumulate_drive(m: Model, h: float, t: float, y: Floats, yp: Floats) -> tuple[float, float, float]:
     """Add the work of the drive; return the pinion's speed, the work's magnitude and its error estimate."""
     q = m.work.quadrature
     pinion, speed, acceleration = _pinion(m, y, yp)
@@ -248,7 +248,9 @@ def _book_drive(m: Model, h: float, t: float, y: Floats, yp: Floats) -> tuple[fl
 
 
 @compiled(inline=True)
-def _book_dry(m: Model, h: float, t: float, travel: float, y: Floats, w_rate: float) -> tuple[float, float]:
+def _accumulate_dry(
+    m: Model, h: float, t: float, travel: float, y: Floats, w_rate: float
+) -> tuple[float, float]:
     """Add the loss by dry resistance; return its magnitude and its error estimate."""
     q, w = m.work.quadrature, y[W]
     force, rate = _torque(m, LOAD, t, y, w, w_rate)
@@ -273,9 +275,9 @@ def _closes_interval(m: Model, h: float) -> bool:
     """Whether to close the quadrature interval: after fewer steps, the larger the error is estimated."""
     steps, most = m.work.quadrature.steps, m.scene.balance_error * m.state.energy.throughput
     error = m.state.energy.quadrature_error
-    if steps >= m.scene.balance_steps or h > m.scene.balance_span or error > most:
+    if steps >= m.scene.quadrature_steps or h > m.scene.quadrature_time or error > most:
         return True
-    return bool(3.0 * error > most and 2 * steps >= m.scene.balance_steps)
+    return bool(3.0 * error > most and 2 * steps >= m.scene.quadrature_steps)
 
 
 @compiled(inline=True)
@@ -329,7 +331,7 @@ def note_changes(m: Model, y: Floats) -> tuple[float, float]:
     (stored, pending), lag = stored_energy(m, y), joining.joining_lag(m)
     now.stored_change = stored - pending - e.start_stored
     now.kinetic_change = kinetic_energy(m, y) - e.start_kinetic
-    return pending - lag, -lag if m.scene.radius_force == 0 else 0.0
+    return pending - lag, -lag if m.scene.curvature_force == 0 else 0.0
 
 
 @compiled

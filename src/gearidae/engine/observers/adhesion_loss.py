@@ -5,8 +5,9 @@ length changes along the path of contact, so that it loses
 
 .. math:: \int \ell\, dq = \ell q - \int q \dot\ell\, dt .
 
-The last integral, the lag, is followed over the intervals of the balance and up to each event of a pair. The work of the changing radius is less by the same: it has
-been worked out as if nothing were lost until the turning point (`gearidae.engine.followers.balance`).
+The last integral, the lag, is followed over the intervals of the balance and up to each event of a pair. The work of
+the changing radius is less by the same: it has been worked out as if nothing were lost until the turning point
+(`gearidae.engine.observers.balance`).
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ def begin(m: Model, t: float) -> None:
 
 @compiled(inline=True)
 def step(m: Model, t: float, y: Floats, w_rate: float) -> None:
-    """Follow the lags of closing contacts to an accepted time; over several steps, as they have no corner between events.
+    """Follow the lags of closing contacts to an accepted time; a pair's lag has no corner between its events.
 
     Parameters
     ----------
@@ -63,21 +64,21 @@ def event(m: Model, y: Floats, coast: int, pair: int, k: int, gap: float) -> Non
     e, losses = m.state.energy, joining_losses(m, k, y, gap)[0]
     lag, inside = m.state.history[k].lag, path_position(m, coast, pair, y[PHASE])
     e.adhesion_loss += contact_length(m, inside) * weighed(shares_of(m, coast, pair, inside), losses) - lag
-    if m.scene.radius_force == 0:
+    if m.scene.curvature_force == 0:
         e.radius_work -= lag
         if m.scene.nodes == 0:
-            _book_before(m, coast, pair, y[PHASE], losses)
+            _accumulate_before(m, coast, pair, y[PHASE], losses)
 
 
 @compiled
-def _book_before(m: Model, coast: int, pair: int, phase: float, losses: Shares) -> None:
+def _accumulate_before(m: Model, coast: int, pair: int, phase: float, losses: Shares) -> None:
     """Keep the power of the changing radius continuous where adhesion losses per length have been added.
 
     From then on it lacks the losses times the rates of the lengths. They are taken out where the quadrature began, too,
     and what that leaves out until now is the losses times what the lengths have changed by.
     """
     first, last = pairs_on_path(m, coast)
-    if m.state.near[coast] == 0 or not first <= pair <= last:
+    if m.state.flank_in_reach[coast] == 0 or not first <= pair <= last:
         return
     q = m.work.quadrature
     before = q.gear_travel * m.scene.phase_rate

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from gearidae.compiled import compiled
 from gearidae.contact.history import extreme_gap
-from gearidae.engine.followers.extremes.forces import first_force, follow_force, force_of_motion, note_corner
-from gearidae.engine.followers.extremes.speeds import (
+from gearidae.engine.model.state import PHASE, Floats, Model, Record, U, V, W
+from gearidae.engine.motion.observe import rigid_separation, separation
+from gearidae.engine.observers.extremes.forces import first_force, follow_force, force_of_motion, note_corner
+from gearidae.engine.observers.extremes.speeds import (
     come_to_stand,
     follow_speed,
     is_pulled_back,
@@ -13,9 +15,7 @@ from gearidae.engine.followers.extremes.speeds import (
     note_hold,
     note_speed,
 )
-from gearidae.engine.followers.standing import follow as standing
-from gearidae.engine.model.state import PHASE, Floats, Model, Record, U, V, W
-from gearidae.engine.motion.observe import rigid_separation, separation
+from gearidae.engine.observers.standing import follow as standing
 
 
 @compiled(inline=True)

@@ -1,4 +1,4 @@
-"""Followers of a run: called in order and if they are wanted, and a run is the same without its energy balance."""
+"""Observers of a run: called in order and if they are wanted, and a run is the same without its energy balance."""
 
 from types import SimpleNamespace
 
@@ -10,8 +10,8 @@ from balances import assert_closes
 from gearidae.archive.totals import imbalance_of
 from gearidae.engine import solve
 from gearidae.engine.backend import run_blocks
-from gearidae.engine.followers import in_turn
 from gearidae.engine.model.state import V, W
+from gearidae.engine.observers import dispatch
 from gearidae.engine.setup.build import make_problem
 from gearidae.records import Statistics
 
@@ -38,7 +38,7 @@ WITHOUT = {"run.balance": False}
 
 
 class Recorder:
-    """A follower that notes when it is called."""
+    """An observer that notes when it is called."""
 
     def __init__(self, name, calls):
         self._name, self._calls = name, calls
@@ -50,8 +50,8 @@ class Recorder:
 @pytest.fixture
 def calls(monkeypatch):
     names = []
-    for name in ("joining", "extremes", "rubbing", "balance", "exposures"):
-        monkeypatch.setattr(in_turn, name, Recorder(name, names))
+    for name in ("adhesion_loss", "extremes", "friction_losses", "balance", "exposures"):
+        monkeypatch.setattr(dispatch, name, Recorder(name, names))
     return names
 
 
@@ -60,11 +60,11 @@ def follow(balance, exposures):
     wanted = SimpleNamespace(balance=balance, friction=balance, extremes=1, exposures=exposures)
     m = SimpleNamespace(scene=SimpleNamespace(follow=wanted, kind=0))
     y, turned = np.zeros(max(V, W) + 1), SimpleNamespace(turns=True, coast=0, pair=0, k=0, gap=0.0)
-    in_turn.begin.py_func(m, 0.0, y, y)
-    in_turn.step.py_func(m, 1.0, y, y, (True, True), (y, y))
-    in_turn.event.py_func(m, 1.0, y, y, turned)
-    in_turn.resume.py_func(m, 1.0, y, True, True)
-    in_turn.finish.py_func(m, 1.0, y, y)
+    dispatch.begin.py_func(m, 0.0, y, y)
+    dispatch.step.py_func(m, 1.0, y, y, (True, True), (y, y))
+    dispatch.event.py_func(m, 1.0, y, y, turned)
+    dispatch.resume.py_func(m, 1.0, y, True, True)
+    dispatch.finish.py_func(m, 1.0, y, y)
 
 
 def test_all_are_called_in_order(calls):
@@ -72,20 +72,24 @@ def test_all_are_called_in_order(calls):
     hooks = {
         hook: [call.partition(".")[0] for call in calls if call.endswith(hook)] for hook in ("step", "finish")
     }
-    assert hooks["step"] == ["joining", "extremes", "balance", "exposures"]
-    assert calls.index("rubbing.book_rubbing") < calls.index("extremes.step") < calls.index("balance.step")
+    assert hooks["step"] == ["adhesion_loss", "extremes", "balance", "exposures"]
+    assert (
+        calls.index("friction_losses.accumulate_friction")
+        < calls.index("extremes.step")
+        < calls.index("balance.step")
+    )
     assert hooks["finish"] == ["balance", "exposures"]
-    assert calls.index("joining.event") < calls.index("exposures.event")
+    assert calls.index("adhesion_loss.event") < calls.index("exposures.event")
 
 
 @pytest.mark.parametrize(
     ("balance", "exposures", "gone"),
-    [(0, 0, {"joining", "rubbing", "balance", "exposures"}), (1, 0, {"exposures"})],
+    [(0, 0, {"adhesion_loss", "friction_losses", "balance", "exposures"}), (1, 0, {"exposures"})],
 )
 def test_what_is_not_wanted_is_not_called(calls, balance, exposures, gone):
     follow(balance, exposures)
     called = {call.partition(".")[0] for call in calls}
-    assert called == {"joining", "extremes", "rubbing", "balance", "exposures"} - gone
+    assert called == {"adhesion_loss", "extremes", "friction_losses", "balance", "exposures"} - gone
 
 
 # -- a run without its energy balance --------------------------------------------------------------------------------

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from gearidae.engine.followers.standing.follow import STANDING_NUMBERS, standing_at
 from gearidae.engine.model.record_types import HELD_GEAR
 from gearidae.engine.model.state import Floats, Model, plain
+from gearidae.engine.observers.standing.follow import STANDING_NUMBERS, standing_at
 from gearidae.records.standing import Holding
 
 
@@ -21,7 +21,7 @@ def standing_now(m: Model, place: int, time: float, y: Floats) -> dict[str, Any]
     ----------
     m : Model
     place : int
-        Of the model, from `gearidae.engine.model.located.Located`.
+        Of the model, from `gearidae.engine.model.addresses.Addresses`.
     time : float
         Reached, over tau.
     y : ndarray, shape (n,)

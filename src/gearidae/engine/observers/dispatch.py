@@ -1,32 +1,32 @@
-"""The followers of a run in their order, each called only if the scene wants it.
+"""The observers of a run in their order, each called only if the scene wants it.
 
-A follower keeps sums or extremes of its own and changes nothing else. It is a module with `begin` at a start of the
-integration, `step` at every accepted time, `event` before a pair's history takes what has happened at a root, `flips`
-where asperities have joined or detached, `resume` behind all events of a root, and `finish` before a restart, at the
-end and for a look in between. It leaves out what it does not need. Exposures use what joining and the balance have left
-at the same time, and extremes the force that losses by friction have.
+An observer accumulates totals and extremes and never changes the solution. It is a module with `begin` at a start of
+the integration, `step` at every accepted time, `event` before a pair's history takes what has happened at a root,
+`asperity_switches` where asperities have joined or detached, `resume` behind all events of a root, and `finish` before
+a restart, at the end and for a look in between. It leaves out what it does not need. Exposures use what adhesion loss
+and balance have left at the same time, and extremes the force that losses by friction have.
 """
 
 from __future__ import annotations
 
 from gearidae.compiled import compiled
 from gearidae.engine.events.pair_events import PairEvent
-from gearidae.engine.followers import balance, joining, rubbing
-from gearidae.engine.followers.exposures import follow as exposures
-from gearidae.engine.followers.exposures.contacts import add_flips
-from gearidae.engine.followers.extremes import follow as extremes
-from gearidae.engine.model.located import model_at
+from gearidae.engine.model.addresses import model_at
 from gearidae.engine.model.state import Floats, Model, W
+from gearidae.engine.observers import adhesion_loss, balance, friction_losses
+from gearidae.engine.observers.exposures import follow as exposures
+from gearidae.engine.observers.exposures.contacts import add_asperity_switches
+from gearidae.engine.observers.extremes import follow as extremes
 
 
 @compiled
 def begin(m: Model, t: float, y: Floats, yp: Floats) -> None:
     """Begin at a start of the integration, with its state and rates."""
     if m.scene.follow.balance != 0:
-        joining.begin(m, t)
+        adhesion_loss.begin(m, t)
         balance.begin(m, t, y, yp)
     if m.scene.follow.friction != 0:
-        rubbing.note_rubbing(m, t, y)
+        friction_losses.note_friction(m, t, y)
     if m.scene.follow.extremes != 0:
         extremes.begin(m, t, y, yp)
     if m.scene.follow.exposures != 0:
@@ -51,9 +51,9 @@ def step(
         Work space.
     """
     if m.scene.follow.exposures != 0:  # they need the lags wherever a contact leaves a place
-        joining.step(m, t, y, yp[W])
+        adhesion_loss.step(m, t, y, yp[W])
     if m.scene.follow.friction != 0:
-        rubbing.book_rubbing(m, t, y, at[1], between[0], between[1])
+        friction_losses.accumulate_friction(m, t, y, at[1], between[0], between[1])
     if m.scene.follow.extremes != 0:
         extremes.step(m, t, y, yp, at[0], between)
     if m.scene.follow.balance != 0:
@@ -66,18 +66,18 @@ def step(
 def event(m: Model, t: float, y: Floats, yp: Floats, event: PairEvent) -> None:
     """Take note of what has happened to a pair, before its history does."""
     if m.scene.follow.balance != 0:
-        joining.step(m, t, y, yp[W])
+        adhesion_loss.step(m, t, y, yp[W])
         if event.turns:
-            joining.event(m, y, event.coast, event.pair, event.k, event.gap)
+            adhesion_loss.event(m, y, event.coast, event.pair, event.k, event.gap)
     if m.scene.follow.exposures != 0:
         exposures.event(m, t, y, yp, event)
 
 
 @compiled
-def flips(m: Model, y: Floats) -> None:
+def asperity_switches(m: Model, y: Floats) -> None:
     """Take note of asperities that have joined or detached, before they are recorded."""
     if m.scene.follow.exposures != 0:
-        add_flips(m, y)
+        add_asperity_switches(m, y)
 
 
 @compiled
@@ -95,10 +95,10 @@ def resume(m: Model, t: float, y: Floats, crossed: bool, joined: bool) -> None:
     """
     if m.scene.follow.balance != 0:
         if crossed:
-            joining.resume(m, y)
+            adhesion_loss.resume(m, y)
         balance.resume(m, t, y, crossed, joined)
     if m.scene.follow.friction != 0:
-        rubbing.note_rubbing(m, t, y)
+        friction_losses.note_friction(m, t, y)
     if m.scene.follow.extremes != 0:
         extremes.resume(m, t, y)
 
@@ -119,7 +119,7 @@ def look_at(place: int, t: float, y: Floats, yp: Floats) -> None:
     Parameters
     ----------
     place : int
-        Of the model, from `gearidae.engine.model.located.Located`.
+        Of the model, from `gearidae.engine.model.addresses.Addresses`.
     t : float
         Time over tau.
     y, yp : ndarray, shape (n,)

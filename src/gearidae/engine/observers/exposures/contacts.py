@@ -2,7 +2,7 @@ r"""Asperity contacts that closing pairs have made, and the energy lost by them,
 
 A contact of length :math:`\ell` that closes from one turning point to the next makes :math:`\int \ell\, d\Psi` contacts
 of each material, with :math:`\Psi` those per length. The energy balance follows how much less that is than the length
-times the rise of :math:`\Psi` (the lag, `gearidae.engine.followers.joining`): of rigid bodies with hysteresis and
+times the rise of :math:`\Psi` (the lag, `gearidae.engine.observers.adhesion_loss`): of rigid bodies with hysteresis and
 uniform coverage, contacts are added up at turning points, and where a contact leaves a place. Of others, the lag of
 each material is not known: there they are added up as often as sliding work is, with the mean length.
 
@@ -17,13 +17,13 @@ from gearidae.contact.history import extreme_gap, joined_height
 from gearidae.contact.kernels.law import loading_value
 from gearidae.engine.compiling import EXPOSURES
 from gearidae.engine.elastic.energy import nodes_number
-from gearidae.engine.followers.exposures.bins import ROWS, bin_at, row_of, share_at_edge
 from gearidae.engine.formulas.interpolation import cubic
 from gearidae.engine.model.state import MATERIALS, Floats, Model
+from gearidae.engine.observers.exposures.bins import ROWS, bin_at, row_of, share_at_edge
 from gearidae.engine.pairs.tooth_pairs import contact_length, list_known
+from gearidae.engine.population.contact_point import pair_of, place_of_arc, spot_at
 from gearidae.engine.population.forces import candidate_energy
 from gearidae.engine.population.layout import ARC, HEIGHT, K_MATERIAL, KIND, REMEMBERED, SIGN, column
-from gearidae.engine.population.spots import pair_of, place_of_arc, spot_at
 
 
 @compiled
@@ -241,15 +241,15 @@ def _note_crossings(m: Model, t: float, k: int, inside: float, force: tuple[floa
 
 
 @compiled_once(EXPOSURES)
-def add_flips(m: Model, y: Floats) -> None:
-    """Add what has joined or detached at a root, after `flip_asperities` has found it and before it is recorded."""
+def add_asperity_switches(m: Model, y: Floats) -> None:
+    """Add what has joined or detached at a root, after `switch_asperities` has found it and before it is recorded."""
     for i in range(list_known(m, y)):
         k = m.work.known[i]
         contact, now = m.work.contact[k], pair_of(m, k, y)
         row = row_of(m, now.coast, now.number)
         at = spot_at(m, now.place, now.moves)
         bend = 0.5 * m.scene.population.steepness / at.radius
-        for n in range(contact.flips):
+        for n in range(contact.asperity_switches):
             j = int(m.rows[column(m, k, REMEMBERED) + n])
             arc, kind = m.rows[column(m, k, ARC) + j], int(m.rows[column(m, k, KIND) + j])
             x = arc - at.arc

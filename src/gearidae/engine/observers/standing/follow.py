@@ -7,15 +7,20 @@ from typing import Final
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.followers.standing.free_gears import follow_free
-from gearidae.engine.followers.standing.free_torques import (
+from gearidae.engine.formulas.interpolation import cubic, cubic_slope
+from gearidae.engine.model.addresses import model_at
+from gearidae.engine.model.checkpoint_record import HIGH, MOST_STANDSTILLS, SPARE
+from gearidae.engine.model.record_types import AT_REST, HELD_GEAR
+from gearidae.engine.model.state import DRIVE, PHASE, STOPS, Floats, Model, Record, W
+from gearidae.engine.observers.standing.free_gears import follow_free
+from gearidae.engine.observers.standing.free_torques import (
     enter_segments,
     excess,
     free_torque,
     largest_excess,
     slowest_period,
 )
-from gearidae.engine.followers.standing.zeros import (
+from gearidae.engine.observers.standing.zeros import (
     add_zero,
     copy_zero,
     distance,
@@ -28,11 +33,6 @@ from gearidae.engine.followers.standing.zeros import (
     standing_since,
     stood_until,
 )
-from gearidae.engine.formulas.interpolation import cubic, cubic_slope
-from gearidae.engine.model.checkpoint_record import HIGH, MOST_STANDSTILLS, SPARE
-from gearidae.engine.model.located import model_at
-from gearidae.engine.model.record_types import AT_REST, HELD_GEAR
-from gearidae.engine.model.state import DRIVE, PHASE, STOPS, Floats, Model, Record, W
 from gearidae.records.standing import HALF_PITCH
 
 SLOWER: Final = 0.1
@@ -300,13 +300,13 @@ def standing_at(place: int, t: float, y: Floats, out: Floats) -> None:
     Parameters
     ----------
     place : int
-        Of the model, from `gearidae.engine.model.located.Located`.
+        Of the model, from `gearidae.engine.model.addresses.Addresses`.
     t : float
         Time over tau.
     y : ndarray, shape (n,)
         State there.
     out : ndarray, shape (STANDING_NUMBERS,)
-        Filled in; see `gearidae.engine.followers.extremes.units`.
+        Filled in; see `gearidae.engine.observers.extremes.units`.
     """
     m = model_at(place)
     s, time, position = m.state.standing, t * m.scene.time_unit, y[PHASE] + m.state.turns
