@@ -5,8 +5,7 @@ length changes along the path of contact, so that it loses
 
 .. math:: \int \ell\, dq = \ell q - \int q \dot\ell\, dt .
 
-The last integral, the lag, is followed over the intervals of the balance and up to each event of a pair. The work of
-the changing radius is less by the same: it has been worked out as if nothing were lost until the turning point
+The last integral, the lag, is followed from step to step. The work of the changing radius is less by the same: it has been worked out as if nothing were lost until the turning point
 (`gearidae.engine.observers.balance`).
 """
 
@@ -37,7 +36,7 @@ def begin(m: Model, t: float) -> None:
 
 @compiled(inline=True)
 def step(m: Model, t: float, y: Floats, w_rate: float) -> None:
-    """Follow the lags of closing contacts to an accepted time; a pair's lag has no corner between its events.
+    """Follow the lags of closing contacts to an accepted time.
 
     Parameters
     ----------

@@ -50,7 +50,7 @@ from gearidae.engine.formulas.quadrature import (
     torque_work,
 )
 from gearidae.engine.model.state import DRIVE, LOAD, MATERIALS, PHASE, Floats, Model, U, V, W
-from gearidae.engine.observers import adhesion_loss
+from gearidae.engine.observers.adhesion_loss import joining_lag
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.pairs.squeeze_film import film_loss
 from gearidae.engine.pairs.tooth_pairs import (
@@ -202,7 +202,6 @@ def _accumulate(m: Model, t: float, y: Floats, yp: Floats, now: bool) -> None:
     q.steps = 0
     q.time = t
     w, w_rate = y[W], yp[W]
-    adhesion_loss.step(m, t, y, w_rate)
     gear = y[PHASE] / m.scene.phase_rate
     speed, exchange, error = _accumulate_drive(m, h, t, y, yp)
     if m.scene.dry != 0:
@@ -328,7 +327,7 @@ def _note_resistance(m: Model, t: float, gear: float, y: Floats, yp: Floats) -> 
 def note_changes(m: Model, y: Floats) -> tuple[float, float]:
     """Note the changes of the energies at a state, and return what adhesion loss and radius work have pending there."""
     e, now = m.state.energy, m.work.energy_now
-    (stored, pending), lag = stored_energy(m, y), adhesion_loss.joining_lag(m)
+    (stored, pending), lag = stored_energy(m, y), joining_lag(m)
     now.stored_change = stored - pending - e.start_stored
     now.kinetic_change = kinetic_energy(m, y) - e.start_kinetic
     return pending - lag, -lag if m.scene.curvature_force == 0 else 0.0

@@ -50,7 +50,7 @@ def step(
     between : tuple of two ndarrays, shape (n,)
         Work space.
     """
-    if m.scene.follow.exposures != 0:  # they need the lags wherever a contact leaves a place
+    if m.scene.follow.balance != 0:
         adhesion_loss.step(m, t, y, yp[W])
     if m.scene.follow.friction != 0:
         friction_losses.accumulate_friction(m, t, y, at[1], between[0], between[1])
@@ -65,10 +65,8 @@ def step(
 @compiled(inline=True)
 def event(m: Model, t: float, y: Floats, yp: Floats, event: PairEvent) -> None:
     """Take note of what has happened to a pair, before its history does."""
-    if m.scene.follow.balance != 0:
-        adhesion_loss.step(m, t, y, yp[W])
-        if event.turns:
-            adhesion_loss.event(m, y, event.coast, event.pair, event.k, event.gap)
+    if m.scene.follow.balance != 0 and event.turns:
+        adhesion_loss.event(m, y, event.coast, event.pair, event.k, event.gap)
     if m.scene.follow.exposures != 0:
         exposures.event(m, t, y, yp, event)
 
