@@ -68,7 +68,13 @@ def test_types_reach_the_user(tmp_path):
     script.write_text(SCRIPT)
     settings.write_text(SKIPPED)
     out, _, code = api.run(
-        ["--strict", f"--config-file={settings}", f"--cache-dir={tmp_path}", "--no-error-summary", str(script)]
+        [
+            "--strict",
+            f"--config-file={settings}",
+            f"--cache-dir={tmp_path}",
+            "--no-error-summary",
+            str(script),
+        ]
     )
     # One wrong call, found; one revealed type, the right one; and nothing else to complain about.
     complaints = [line for line in out.splitlines() if ": note:" not in line]

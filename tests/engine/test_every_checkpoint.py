@@ -19,7 +19,7 @@ SCENES = {
 }
 
 
-STEPS = {1e-3: 5, 1e-4: 13, 1e-6: 41}
+STEPS = {1e-3: 9, 1e-4: 29, 1e-6: 61}
 """Between checkpoints of a long run, by its tolerance, so that all of it is seen in some hundred checkpoints."""
 
 

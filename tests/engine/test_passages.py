@@ -38,7 +38,11 @@ LOSSES = {
     },
     "attraction": {"surface.interaction_range": 2e-9},
     "elastic bodies": {"contact.bodies": "elastic", "run.duration": 3e-5},
-    "discrete asperities": {"contact.roughness": "discrete", "mesh.radius_force": True, "run.duration": 1.2e-5},
+    "discrete asperities": {
+        "contact.roughness": "discrete",
+        "mesh.radius_force": True,
+        "run.duration": 1.2e-5,
+    },
 }
 """What loses energy besides, one by one."""
 
