@@ -7,6 +7,7 @@ from hypothesis import settings
 
 from gearidae.engine import backend as backend_module
 from gearidae.records import Block, Ending
+from gearidae.report import teeth
 from reference.surface import PlainSurface
 
 # Compilation, once per machine, falls into whichever example comes first.
@@ -41,6 +42,15 @@ def _heed_interrupts():
     """Let tests send Ctrl-C to themselves and to programs of theirs also where a shell runs them in the background."""
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _few_states_of_the_teeth():
+    """Let reports show the teeth at 300 samples in place of 3,000, which take most of a report's time."""
+    with pytest.MonkeyPatch.context() as patch:
+        for function in (teeth.pack_runs, teeth.pack_teeth):
+            patch.setattr(function, "__defaults__", (300,))
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -32,7 +32,7 @@ def made_up_passages(count: int) -> Passages:
     return Passages.of_table(table)
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def make_solution() -> MakeSolution:
     """Make what the engine would hand up for a scene, with numbers that tell columns and runs apart."""
 

@@ -45,7 +45,7 @@ def test_single_runs_make_the_sweep(dim):
 
 
 @given(st.sampled_from(["sam_fraction", "torque"]), st.integers(1, 2))
-@settings(max_examples=4)
+@settings(max_examples=2)
 def test_parts_of_a_sweep_make_the_sweep(whole, dim, cut):
     cut = min(cut, whole.sizes[dim] - 1)
     parts = [whole.isel({dim: slice(cut)}), whole.isel({dim: slice(cut, None)})]
@@ -128,7 +128,7 @@ def cut_in_two(run, place):
 
 
 @given(st.integers(1, 9))
-@settings(max_examples=9)
+@settings(max_examples=3)
 def test_a_chain_is_one_run(run, place):
     first, second = cut_in_two(run, place)
     joined = gd.concat([first, second], "time")

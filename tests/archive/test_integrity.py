@@ -1,6 +1,7 @@
 """A flipped bit in an archive's samples or events: the variable is named, and nothing of it is read as data."""
 
 import json
+import shutil
 
 import netCDF4
 import numpy as np
@@ -25,13 +26,23 @@ def streamed(tmp_path_factory):
     return path
 
 
-@pytest.fixture
-def archives(make_solution, tmp_path, streamed):
+@pytest.fixture(scope="module")
+def kept(make_solution, tmp_path_factory, streamed):
+    folder = tmp_path_factory.mktemp("kept")
     scenes = [LOW.replace({"coating.sam_fraction": fraction}) for fraction in FRACTIONS]
     solutions = [make_solution(scene) for scene in scenes]
-    single = save(to_dataset(LOW, make_solution(LOW)), tmp_path / "single.nc")
     swept = combine(LOW, {"coating.sam_fraction": FRACTIONS}, scenes, solutions)
-    return {"single": single, "swept": save(swept, tmp_path / "swept.nc"), "streamed": streamed}
+    return (
+        save(to_dataset(LOW, make_solution(LOW)), folder / "single.nc"),
+        save(swept, folder / "swept.nc"),
+        shutil.copyfile(streamed, folder / "streamed.nc"),
+    )
+
+
+@pytest.fixture
+def archives(kept, tmp_path):
+    """Copies, for a test to damage."""
+    return {path.stem: shutil.copyfile(path, tmp_path / path.name) for path in kept}
 
 
 def first_bytes(path):

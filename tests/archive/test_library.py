@@ -110,7 +110,7 @@ scene = gd.preset("roller_slow")
 ds = gd.simulate(scene, samples=11)
 
 def work(number):
-    for _ in range(3):
+    for _ in range(2):
         path = gd.save(ds, Path(sys.argv[1]) / f"{number}.nc", overwrite=True)
         assert gd.open_archive(path).identical(ds)
         gd.simulate(scene, samples=11, archive=path, overwrite=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 
 import numpy as np
 import pytest
@@ -20,9 +21,16 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
+@pytest.fixture(scope="module")
+def kept_chart(tmp_path_factory):
+    path = tmp_path_factory.mktemp("chart") / "map.nc"
+    assert main(["coating-map", CASE, *OVER, "-o", str(path)]) == 0
+    return path
+
+
 @pytest.fixture
-def chart(folder, capfd):
-    assert main(["coating-map", CASE, *OVER, "-o", "map.nc"]) == 0
+def chart(folder, kept_chart, capfd):
+    shutil.copyfile(kept_chart, "map.nc")
     capfd.readouterr()
     return "map.nc"
 

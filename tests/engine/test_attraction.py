@@ -19,7 +19,8 @@ ROLLER = gd.preset("roller_slow").replace(
         "contact.bodies": "rigid",
         "roller.height": "60 nm",
         "roller.mass": 1e-14,
-        "run.duration": 3e-6,
+        "run.duration": 2.1e-6,
+        "run.samples": 201,
         "run.rtol": 1e-9,
     }
 )
@@ -54,6 +55,7 @@ def test_a_roller_that_falls_towards_a_plane(backend, model):
     scene = ROLLER.replace({"contact.model": model})
     ds = gd.simulate(scene, backend=backend)
     far = ds.height.values > 30e-9
+    assert np.count_nonzero(far) > 190
     pair = (scene.roller.radius, scene.roller.width, HAMAKER)
     height, speed = ds.height.values[far], ds.speed.values[far]
     np.testing.assert_allclose(ds.force.values[far], attraction_force(height, *pair), rtol=1e-10)

@@ -17,7 +17,7 @@ from gearidae.records import Statistics
 from same import assert_same
 
 SCENE = gd.preset("teodorescu2009_low_speed").replace(
-    {"coating.sam_fraction": 0.5, "run.duration": 0.02, "run.samples": 301}
+    {"coating.sam_fraction": 0.5, "run.duration": 5e-3, "run.samples": 301}
 )
 FAST = gd.preset("teodorescu2009").replace({"contact.bodies": "rigid"})
 
@@ -105,8 +105,8 @@ def test_sums_do_not_depend_on_where_they_are_looked_at(steps, by_place, monkeyp
 
 
 def test_a_resumed_run_is_the_same_run(monkeypatch):
-    """Through scikit-sundae, where the distance of checkpoints is not compiled in; one is taken every 500 steps."""
-    monkeypatch.setattr(portable, "CHECKPOINT_STEPS", 500)
+    """Through scikit-sundae, where the distance of checkpoints is not compiled in; one is taken every 150 steps."""
+    monkeypatch.setattr(portable, "CHECKPOINT_STEPS", 150)
     statistics = Statistics()
     rows, events, blocks = collect(run_blocks(make_problem(SCENE), 1e-6, 301, "sksundae", statistics))
     stops = [i for i, b in enumerate(blocks) if b.checkpoint is not None][:-1]
@@ -141,14 +141,14 @@ def test_a_foreign_checkpoint_is_refused():
 
 def test_phase_is_taken_back_without_a_trace(monkeypatch):
     """Whole pitches move out of the phase now and then; angle, pairs and motion go on as if nothing had been."""
-    plain = solve(FAST, rtol=1e-7, t_end=2e-4, samples=501, backend="sksundae")
+    plain = solve(FAST, rtol=1e-7, t_end=1.6e-4, samples=401, backend="sksundae")
     finish = portable.finish_step_at
     monkeypatch.setattr(
         portable, "finish_step_at", lambda place, y, *rest: finish(place, y, *rest) or abs(y[PHASE]) > 5.0
     )
     monkeypatch.setattr(portable, "prepare_restart", accepted_step.prepare_restart.py_func)
     monkeypatch.setattr(accepted_step, "rebase", _rebase_now)
-    shifted = solve(FAST, rtol=1e-7, t_end=2e-4, samples=501, backend="sksundae")
+    shifted = solve(FAST, rtol=1e-7, t_end=1.6e-4, samples=401, backend="sksundae")
     assert shifted.statistics.restarts > 0
     # each restart changes the steps, and with them the error: some hundred times the tolerance of 1e-7 per step
     for name in ("gear_speed", "gear_angle", "transmission_error"):

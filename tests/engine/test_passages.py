@@ -38,7 +38,11 @@ LOSSES = {
     },
     "attraction": {"surface.interaction_range": 2e-9},
     "elastic bodies": {"contact.bodies": "elastic", "run.duration": 3e-5},
-    "discrete asperities": {"contact.roughness": "discrete", "mesh.radius_force": True, "run.duration": 3e-5},
+    "discrete asperities": {
+        "contact.roughness": "discrete",
+        "mesh.radius_force": True,
+        "run.duration": 1.2e-5,
+    },
 }
 """What loses energy besides, one by one."""
 
@@ -68,9 +72,9 @@ def mesh_exits(events):
 
 
 def test_a_row_for_each_mesh_exit(backend):
-    run = solve(FAST.replace({"run.duration": 3e-4}), backend=backend)
+    run = solve(FAST.replace({"run.duration": 3e-4 if backend == "native" else 8e-5}), backend=backend)
     rows, exits = run.passages, mesh_exits(run.events)
-    assert len(rows) > 8
+    assert len(rows) > (8 if backend == "native" else 2)
     for name in ("time", "pair", "flank"):
         np.testing.assert_array_equal(getattr(rows, name), getattr(run.events, name)[exits])
     onsets = run.events.time[run.events.kind == EventKind.ONSET]
@@ -81,7 +85,7 @@ def test_a_row_for_each_mesh_exit(backend):
 
 
 def test_both_drivers_agree():
-    native_run, other = (solve(LOW, backend=name, rtol=1e-8) for name in ("native", "sksundae"))
+    native_run, other = (solve(FAST, backend=name, rtol=1e-8, t_end=6e-5) for name in ("native", "sksundae"))
     assert len(native_run.passages) == len(other.passages) > 2
     for name in Passages.columns:
         first, second = getattr(native_run.passages, name), getattr(other.passages, name)
@@ -114,7 +118,7 @@ def test_without_a_balance_the_sums_are_missing():
 )
 def test_the_sums_are_those_of_the_energy_balance(losses, backend, monkeypatch):
     """The balance is looked at after each step: at a mesh exit it has the numbers of the row, but for rounding."""
-    scene = FAST.replace(LOSSES[losses])
+    scene = FAST.replace({"run.duration": 3e-5, "run.rtol": 1e-5} | LOSSES[losses])
     every_step(monkeypatch)
     blocks = blocks_of(scene, backend)
     rows = Passages.of_table(np.concatenate([block.passages for block in blocks]))
@@ -192,7 +196,7 @@ def test_extremes_of_the_run_are_among_those_of_its_passages():
 def test_force_at_onsets_and_separations(backend):
     """That of the only contact: the roller's force as it is sampled there."""
     scene = gd.preset("roller_slow").replace(
-        {"contact.bodies": "rigid", "coating.sam_fraction": 0.0, "run.duration": 3e-5, "run.samples": 100_001}
+        {"contact.bodies": "rigid", "coating.sam_fraction": 0.0, "run.duration": 1e-5, "run.samples": 2001}
     )
     run = solve(scene, backend=backend)
     events, force = run.events, run.samples["force"]
@@ -208,9 +212,9 @@ def test_force_at_onsets_and_separations(backend):
 
 
 def test_blocks_of_few_passages_hold_the_same_table(backend, monkeypatch):
-    whole = np.concatenate([block.passages for block in blocks_of(LOW, backend)])
+    whole = np.concatenate([block.passages for block in blocks_of(FAST, backend)])
     monkeypatch.setattr(driver, "BLOCK_PASSAGES", 5)
-    blocks = blocks_of(LOW, backend)
+    blocks = blocks_of(FAST, backend)
     assert max(len(block.passages) for block in blocks) <= 2
     np.testing.assert_array_equal(np.concatenate([block.passages for block in blocks]), whole)
 

@@ -96,12 +96,12 @@ def _resident():
 
 @pytest.mark.slow
 def test_rolling_at_a_fixed_gap_costs_what_each_asperity_loses():
-    """Three thousand asperities above a gap, at stratified heights and places, roll through the contact.
+    """A thousand asperities above a gap, at stratified heights and places, roll through the contact.
 
     The engine's force along the path is integrated from one event to the next, with events where the plain equations
     have them. Over the arc that passes, it is 0.93550 Pc dc N L Q(g/sigma).
     """
-    count, gap, low, high = 3000, 11e-9, 1.2e-6, 5.4e-6
+    count, gap, low, high = 1000, 11e-9, 1.2e-6, 5.4e-6
     sigma, pitch, tail = GEARS.surface.roughness, GEARS.geometry.base_pitch, float(ndtr(-11.0 / 6.0))
     shares = (np.random.default_rng(2).permutation(count) + 0.5) / count
     heights, arcs = -sigma * ndtri(shares * tail), low + (np.arange(count) + 0.5) * (high - low) / count

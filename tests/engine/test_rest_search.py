@@ -241,7 +241,7 @@ def test_a_long_rest_under_a_load_of_twenty_kilohertz(backend, friction, seconds
     assert (slip_times(run) < LANDED).all()
 
 
-@pytest.mark.parametrize("seconds", rests(10.0, 1e4))
+@pytest.mark.parametrize("seconds", rests(3.0, 1e4))
 def test_a_long_rest_in_which_bounds_say_nothing(seconds):
     """Two harmonics whose amplitudes together exceed what the load has above the push, and whose sum never does.
 
@@ -252,7 +252,7 @@ def test_a_long_rest_in_which_bounds_say_nothing(seconds):
     run = solve(PAIR.replace(changes))
     assert run.status == "finished"
     assert run.statistics.steps < STEPS
-    assert run.statistics.guard_evaluations < LOOKS
+    assert run.statistics.guard_evaluations < min(LOOKS, 0.5 * 2e4 * seconds)
     assert (slip_times(run) < LANDED).all()
 
 

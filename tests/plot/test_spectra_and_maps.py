@@ -25,6 +25,11 @@ def chart():
     return gd.analysis.coating_map(LOW, [1.0, 0.8, 0.6])
 
 
+@pytest.fixture(scope="module")
+def torques():
+    return gd.analysis.starting_torque(LOW, [1.0, 0.5, 0.45], simulated=False)
+
+
 def drawn(figure):
     """Draw it: labels and colours that do not go together show only then."""
     figure.canvas.draw()
@@ -123,16 +128,16 @@ def test_map_shows_the_first_impacts_the_later_ones_and_an_assessment(chart, low
     drawn(ax.figure)
 
 
-def test_ticks_carry_the_unit_that_the_label_leaves_out(chart, low):
+def test_ticks_carry_the_unit_that_the_label_leaves_out(chart, low, torques):
     """A prefix without its unit, 5 k beside (Hz), is no unit."""
     frequencies = gd.plot.power_spectrum(low).xaxis
     impact = gd.plot.coating_map(chart).yaxis
     for axis in (frequencies, impact):
         assert axis.get_major_formatter()(5e3) == "5 kHz"
         assert "Hz" not in axis.get_label_text()
-    torques = gd.plot.starting_torque(gd.analysis.starting_torque(LOW, [0.5, 0.45], simulated=False)).yaxis
-    assert torques.get_major_formatter()(5e-12) == "5 pN m"
-    assert "N m" not in torques.get_label_text()
+    starting = gd.plot.starting_torque(torques).yaxis
+    assert starting.get_major_formatter()(5e-12) == "5 pN m"
+    assert "N m" not in starting.get_label_text()
 
 
 def test_map_over_torque_names_its_lines():
@@ -141,15 +146,14 @@ def test_map_over_torque_names_its_lines():
     assert names == ["torque 4 aN m", "torque 5 aN m"]
 
 
-def test_starting_torque_leaves_out_where_nothing_holds():
-    ds = gd.analysis.starting_torque(LOW, [1.0, 0.5, 0.45], simulated=False)
-    ax = gd.plot.starting_torque(ds)
+def test_starting_torque_leaves_out_where_nothing_holds(torques):
+    ax = gd.plot.starting_torque(torques)
     line, drive = ax.get_lines()
     assert np.array_equal(drive.get_ydata(), [LOW.drive.torque] * 2)
     assert np.array_equal(line.get_xdata(), [50.0, 45.0])
-    assert np.array_equal(line.get_ydata(), ds.static_torque[1:])
+    assert np.array_equal(line.get_ydata(), torques.static_torque[1:])
     with pytest.raises(gd.SceneError, match="does not hold"):
-        gd.plot.starting_torque(ds.isel(sam_fraction=[0]))
+        gd.plot.starting_torque(torques.isel(sam_fraction=[0]))
 
 
 def test_datasets_of_another_kind_are_refused(low, chart):

@@ -37,7 +37,7 @@ CASES = {
             {"amplitude": 4e-12, "frequency": 9e5, "phase": 2.0},
         ]
     },
-    "no backlash": {"mesh.backlash": 0.0, "initial.gap": 0.0, "run.duration": 1e-6},
+    "no backlash": {"mesh.backlash": 0.0, "initial.gap": 0.0, "run.duration": 4e-7},
     "backlash below the range of the force": {"mesh.backlash": 4e-8, "initial.gap": 1.5e-8},
     "gap starts on the coast flank": {"initial.gap": 1.9e-7, "drive.torque": 0.0},
     "contact ratio near one": {

@@ -5,6 +5,7 @@ import pytest
 
 import gearidae as gd
 from gearidae import engine
+from gearidae.engine.integrate import driver
 from gearidae.errors import SceneError
 from gearidae.records import Ending
 
@@ -36,9 +37,13 @@ def many_knots(count, duration):
     return [[float(time), 1e-12 * (number % 3)] for number, time in enumerate(times)]
 
 
+ROWS = 1000
+"""Events for which a block has room, in place of 16,384."""
+
+
 def overrun():
-    """20,000 restarts and no block: the portable driver yields events only where it does not restart."""
-    return HIGH.replace({"drive.schedule": many_knots(20_000, 1e-4), "run.duration": 1e-4, "run.samples": 11})
+    """1,200 restarts and no block: the portable driver yields events only where it does not restart."""
+    return HIGH.replace({"drive.schedule": many_knots(1200, 6e-6), "run.duration": 6e-6, "run.samples": 11})
 
 
 def close_knots():
@@ -93,7 +98,8 @@ def singular_start():
 
 @pytest.mark.parametrize("backend", ["native", "sksundae"])
 @pytest.mark.parametrize("make", [overrun, wide_reach])
-def test_the_engine_ends_with_a_name_or_gives_blocks(make, backend):
+def test_the_engine_ends_with_a_name_or_gives_blocks(make, backend, monkeypatch):
+    monkeypatch.setattr(driver, "BLOCK_EVENTS", ROWS)
     assert ending(make(), backend) in NAMED
 
 

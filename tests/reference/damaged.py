@@ -15,8 +15,8 @@ from gearidae.records import Statistics
 
 __all__ = ["BUDGET", "SCENES", "UNREADY"]
 
-BUDGET = 8
-"""Blocks of output after which a run is left alone: some hundred thousand steps, where a sound one takes hundreds."""
+BUDGET = 3
+"""Blocks of output after which a run is left alone: tens of thousands of steps, where a sound one takes hundreds."""
 UNREADY = "unready"
 """Ending of a run whose forged state asks for code that its scene has not had compiled, which Python says."""
 

@@ -310,5 +310,5 @@ def test_a_running_mean_has_a_report_without_the_teeth(single, texts):
     assert '<div id="teeth-viewer">' in texts["single"]
     assert '<div id="teeth-viewer">' not in build_report(single.rolling(time=5).mean())
     ds = single.copy(deep=True)
-    ds["gear_angle"][2000] = np.nan
+    ds["gear_angle"][2000:2020] = np.nan
     assert "cannot be repeated here" in build_report(ds)

@@ -16,7 +16,7 @@ CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
 LOW = gd.preset("teodorescu2009_low_speed")
 
 
-LONG = {"alternating"}
+LONG = {"alternating", "start_up", "run_down"}
 SETTLING = {"inspection"}
 """Cases whose teeth stop vibrating for most of the run, so that it takes fewer steps than the estimate."""
 

@@ -28,11 +28,13 @@ from gearidae.runs.kept_validity import largest_force
 from gearidae.runs.validity import validity_attribute
 
 LOW = gd.preset("teodorescu2009_low_speed").replace(
-    {"coating.sam_fraction": 0.5, "run.duration": 0.005, "run.samples": 201}
+    {"coating.sam_fraction": 0.5, "run.duration": 0.0025, "run.samples": 201}
 )
 START_UP = gd.load_case(Path(__file__).parents[2] / "cases" / "start_up.toml")
 HANGS = 60.0
 """Seconds after which a child counts as hanging: its work takes less than five on a busy machine."""
+STEPS = 150
+"""Of the portable driver between checkpoints, of which a run shall have some; each starts the solver anew."""
 MOMENTARY = ("history", "date_created", "wall_time")
 """Attributes in which two runs of one scene may differ."""
 
@@ -42,10 +44,18 @@ def path(tmp_path):
     return tmp_path / "run.nc"
 
 
+@pytest.fixture(scope="module")
+def whole():
+    """The run of `LOW` with checkpoints as in `many_small_blocks`, in memory."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(portable, "CHECKPOINT_STEPS", STEPS)
+        return gd.simulate(LOW, backend="sksundae")
+
+
 @pytest.fixture
 def many_small_blocks(monkeypatch):
     """Blocks, checkpoints and growth of the file all the time, by the driver whose limits are not compiled in."""
-    monkeypatch.setattr(portable, "CHECKPOINT_STEPS", 300)
+    monkeypatch.setattr(portable, "CHECKPOINT_STEPS", STEPS)
     monkeypatch.setattr(portable, "BLOCK_SECONDS", 0.0)
     monkeypatch.setattr(driver, "BLOCK_ROWS", 7)
     monkeypatch.setattr(growing, "CHECKPOINT_SECONDS", 0.0)
@@ -132,9 +142,8 @@ def die_at_write(number):
 
 
 @pytest.mark.usefixtures("many_small_blocks")
-def test_killed_within_any_write_the_archive_is_sound_and_the_run_goes_on(path):
+def test_killed_within_any_write_the_archive_is_sound_and_the_run_goes_on(path, whole):
     """Half of a write is the worst that a kill leaves behind; tried at many of them, one run after the other."""
-    whole = gd.simulate(LOW, backend="sksundae")
 
     def killed(number):
         die_at_write(number)
@@ -176,7 +185,7 @@ def kill_again_and_again(path, scene, backend, kills, share):
 @pytest.mark.usefixtures("many_small_blocks")
 def test_killed_at_five_random_instants_and_resumed_is_the_same_run(path):
     # if this process has to wait the run may reach its end before the fifth
-    assert 2 <= kill_again_and_again(path, LOW.replace({"run.duration": 0.01}), "sksundae", 5, 0.2) <= 5
+    assert 2 <= kill_again_and_again(path, LOW, "sksundae", 5, 0.2) <= 5
 
 
 @pytest.mark.by_hand
@@ -200,7 +209,7 @@ def test_start_up_killed_at_random_instants_is_the_same_run(path, monkeypatch):
 
 def test_readable_at_any_time_while_the_run_goes_on(path, monkeypatch):
     monkeypatch.setattr(native, "BLOCK_STEPS", 500)
-    scene = START_UP.replace({"run.duration": 1e-2, "run.samples": 10_001})
+    scene = START_UP.replace({"run.duration": 5e-3, "run.samples": 10_001})
     looks, next_wait = multiprocessing.Value("i", 0), [0.05]
 
     def await_looks(reached, events):
@@ -230,8 +239,8 @@ def test_readable_at_any_time_while_the_run_goes_on(path, monkeypatch):
 
 
 def test_a_run_may_look_at_its_own_archive_and_nobody_else_may_write_it(path, monkeypatch):
-    monkeypatch.setattr(native, "BLOCK_STEPS", 200)
-    monkeypatch.setattr(native, "FIRST_STEPS", 200)
+    monkeypatch.setattr(native, "BLOCK_STEPS", 50)
+    monkeypatch.setattr(native, "FIRST_STEPS", 50)
     looked = []
 
     def look(reached, events):
@@ -260,8 +269,7 @@ def interrupt_after(share):
 
 
 @pytest.mark.usefixtures("many_small_blocks")
-def test_interrupted_and_resumed_is_the_same_run(path):
-    whole = gd.simulate(LOW, backend="sksundae")
+def test_interrupted_and_resumed_is_the_same_run(path, whole):
     for share in (0.2, 0.6):
         with pytest.raises(gd.errors.Interrupted) as caught:
             simulate(path, resume=True, progress=interrupt_after(share))
@@ -385,9 +393,8 @@ def test_no_room_at_all_is_said_before_anything_is_run(path, capfd):
 
 
 @pytest.mark.usefixtures("many_small_blocks")
-def test_a_disk_that_fills_up_leaves_what_was_written(path, monkeypatch):
+def test_a_disk_that_fills_up_leaves_what_was_written(path, whole, monkeypatch):
     """Room for the file as it begins, not for all the events; then room again."""
-    whole = gd.simulate(LOW, backend="sksundae")
     write = growing.GrowingArchive._write
 
     def write_some(self, name, first, values):
@@ -402,7 +409,7 @@ def test_a_disk_that_fills_up_leaves_what_was_written(path, monkeypatch):
     assert 0 < part.sizes["event"] < whole.sizes["event"]
     xr.testing.assert_identical(part, caught.value.dataset)
     monkeypatch.undo()
-    monkeypatch.setattr(portable, "CHECKPOINT_STEPS", 300)
+    monkeypatch.setattr(portable, "CHECKPOINT_STEPS", STEPS)
     simulate(path, resume=True)
     assert_same(gd.open_archive(path), whole)
 

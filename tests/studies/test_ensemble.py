@@ -71,7 +71,7 @@ def test_a_run_is_judged_alike_with_and_without_a_dataset():
     for scene in (
         LOW,
         gd.preset("roller_slow").replace({"contact.bodies": "rigid"}),
-        gd.preset("start_up"),
+        gd.preset("start_up").replace({"run.duration": "10 ms"}),
     ):
         solution = solve(scene.replace({"run.samples": "off"}), "auto")
         (outcome,) = outcomes(to_dataset(scene.replace({"run.samples": "off"}), solution))

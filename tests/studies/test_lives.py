@@ -8,7 +8,7 @@ import gearidae as gd
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"coating.sam_fraction": 0.7})
 LAW = gd.wear.loss_law("adhesion_work", energy=1e-6)
-SHORT = {"cycles": 3, "settle": 4, "starts": 1, "places": 2, "fraction": 0.695, "tolerance": 1e-2}
+SHORT = {"cycles": 2, "settle": 1, "starts": 1, "places": 2, "fraction": 0.695, "tolerance": 1e-2}
 VARY = {"drive.torque": "uniform(4e-18, 5e-18)"}
 
 

@@ -149,8 +149,10 @@ def refuse_other_labels(ds: xr.Dataset) -> None:
     keys = {key: value for key, value in _numbers_in(scene, "") if key not in swept}
     others = {*LABELS, *dimension_names(swept).values()}
     for key, name in dimension_names(list(keys)).items():
-        label = ds.coords.get(name)
-        if label is None or label.dtype.kind not in "fiu" or name in others:
+        if name not in ds.coords or name in others:
+            continue
+        label = ds.coords[name]
+        if label.dtype.kind not in "fiu":
             continue
         other = label.values[label.values != keys[key]]
         if other.size:

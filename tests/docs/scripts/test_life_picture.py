@@ -8,7 +8,7 @@ from gearidae_pages.life_picture import follow, shown
 
 def test_a_short_life_is_followed_assessed_and_told():
     scene = gd.preset("teodorescu2009_low_speed").replace({"coating.sam_fraction": 0.7})
-    seen = follow(scene, np.linspace(0.64, 0.76, 7), fraction=0.69)
+    seen = follow(scene, np.linspace(0.66, 0.74, 5), fraction=0.69)
     told = shown(seen)
     assert "ends: coverage" in told
     assert f"assessments: {seen.sizes['passages']}, clear: " in told

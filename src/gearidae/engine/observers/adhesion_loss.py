@@ -5,8 +5,8 @@ length changes along the path of contact, so that it loses
 
 .. math:: \int \ell\, dq = \ell q - \int q \dot\ell\, dt .
 
-The last integral, the lag, is followed from step to step. The work of the changing radius is less by the same: it has been worked out as if nothing were lost until the turning point
-(`gearidae.engine.observers.balance`).
+The last integral, the lag, is followed from step to step. The work of the changing radius is less by the same: it has
+been worked out as if nothing were lost until the turning point (`gearidae.engine.observers.balance`).
 """
 
 from __future__ import annotations
