@@ -52,7 +52,7 @@ if TYPE_CHECKING:
     from gearidae.torques import torque_names as torque_names
     from gearidae.torques import unregister_torque as unregister_torque
 
-__version__ = "0.2.0"
+__version__ = "0.3.0"
 
 __getattr__, __dir__, __all__ = lazy_names(__name__)
 

@@ -17,7 +17,7 @@ from gearidae.contact.psi import psi
 from gearidae.engine.backend import solve
 from gearidae.engine.continuing import end_of
 from gearidae.engine.events.histories import accept
-from gearidae.engine.events.sliding import begin_sliding
+from gearidae.engine.events.sliding import STILL, begin_sliding
 from gearidae.engine.integrate.start import set_rates
 from gearidae.engine.model.record_types import AT_REST
 from gearidae.engine.model.state import PHASE, U, V, W
@@ -542,7 +542,9 @@ def test_friction_never_gives_power(gap, phase, v, w, coast):
     _accept(m, y)
     begin_sliding(m, 0.0, y)
     note_friction(m, 0.0, y)
-    assert (m.work.friction.power >= -1e-12).all()
+    # sliding slower than STILL has no direction yet: it takes that in which it accelerates
+    forces = m.work.pair_forces.pair["force"][: m.work.pair_forces.count]
+    assert (m.work.friction.power >= -1e-12 - STILL * abs(forces).sum()).all()
     flank = 1 if coast else 0
     assert m.work.friction.power[1 - flank] == 0.0
 
