@@ -97,6 +97,23 @@ def test_large_archives_are_read_when_used(single, tmp_path, monkeypatch):
         xr.testing.assert_identical(ds, single)
 
 
+def test_a_file_that_is_replaced_while_it_is_opened_is_opened_again(single, tmp_path, monkeypatch):
+    """The netCDF library opens a file twice; a run that ends in between leaves it an unknown format."""
+    path, finished = tmp_path / "run.nc", tmp_path / "finished.nc"
+    save(single, path)
+    save(single, finished)
+    opened = netcdf_module._opened
+
+    def meets_another_file(source, commits):
+        if finished.exists():
+            finished.replace(path)
+            raise OSError("NetCDF: Unknown file format")
+        return opened(source, commits)
+
+    monkeypatch.setattr(netcdf_module, "_opened", meets_another_file)
+    xr.testing.assert_identical(gd.open_archive(path), single)
+
+
 def test_saving_what_was_read_again(sweep, tmp_path):
     """Encodings of the first file must not leak into the second."""
     save(sweep, tmp_path / "first.nc")

@@ -104,7 +104,7 @@ def open_archive(path: str | os.PathLike[str]) -> xr.Dataset:
         raise SceneError("archive", path, "is no file that can be read")
     try:
         with source.open("rb") as file:
-            head = file.read(8)
+            head, looked_at = file.read(8), os.fstat(file.fileno())
     except OSError as error:
         raise SceneError("archive", path, f"cannot be read ({error.strerror})") from error
     if not head.startswith(_SIGNATURES):
@@ -116,6 +116,8 @@ def open_archive(path: str | os.PathLike[str]) -> xr.Dataset:
     except SceneError:
         raise
     except Exception as error:  # a damaged file can make the netCDF stack raise almost anything
+        if source.exists() and not os.path.samestat(looked_at, source.stat()):
+            return open_archive(path)  # the netCDF library met the finished file half-way
         raise SceneError("archive", path, f"is damaged or not a netCDF4 file ({error})") from error
     try:
         ds.attrs.pop("checksums", None)  # of version 0.1.0
