@@ -1,4 +1,4 @@
-"""The record of an event in a driver's block of output."""
+"""The record of events in a driver's block of output."""
 
 from __future__ import annotations
 
@@ -6,12 +6,18 @@ import math
 from typing import Final
 
 from gearidae.compiled import compiled
+from gearidae.engine.friction.forces import has_gear_element
+from gearidae.engine.model.record_types import STUCK
 from gearidae.engine.model.state import Floats, Model
 from gearidae.engine.motion.pair_forces import force_of_one
-from gearidae.records import EVENT, EventKind
+from gearidae.engine.pairs.tooth_pairs import flank_of_history
+from gearidae.records import EVENT, EventKind, Flank
 
 _TIME, _KIND, _PAIR, _FLANK, _GAP_RATE, _ASPERITY, _FORCE = EVENT
 _ONSET: Final = float(EventKind.ONSET)
+_REVERSAL, _STICK = float(EventKind.SLIDING_REVERSAL), float(EventKind.FLANK_STICK)
+_SLIP, _GEAR_STICK = float(EventKind.FLANK_SLIP), float(EventKind.STICK)
+_GEAR_SLIP, _NO_FLANK = float(EventKind.SLIP), float(Flank.NONE)
 EVENT_NUMBERS: Final = len(EVENT)
 """Numbers of an event."""
 EVENTS_AT_ONCE: Final = 8 * 64 + 64
@@ -72,3 +78,28 @@ def record_asperity(
     if after > count:
         events[count, _ASPERITY] = asperity
     return after
+
+
+@compiled
+def note_directions(m: Model) -> None:
+    """Note all directions of slip before the decisions of one time."""
+    before = m.work.friction
+    before.before_slip = m.state.slip
+    for k in range(m.scene.histories):
+        before.before_pair[k], before.before_slide[k] = m.state.history[k].pair, m.state.history[k].slide
+
+
+@compiled
+def record_changes(m: Model, t: float, events: Floats, count: int) -> int:
+    """Record in what directions of slip have changed by all decisions of one time; the new number of events."""
+    before = m.work.friction
+    for k in range(m.scene.histories):
+        h, last = m.state.history[k], before.before_slide[k]
+        if h.pair != before.before_pair[k] or h.slide == last or h.slide == 0 or last == 0:
+            continue
+        kind = _STICK if h.slide == STUCK else _SLIP if last == STUCK else _REVERSAL
+        count = record(m, events, count, t, kind, h.pair, flank_of_history(m, k), h.gap_rate)
+    if has_gear_element(m) and (m.state.slip == 0.0) != (before.before_slip == 0.0):
+        kind = _GEAR_STICK if m.state.slip == 0.0 else _GEAR_SLIP
+        count = record(m, events, count, t, kind, 0, _NO_FLANK, 0.0)
+    return count

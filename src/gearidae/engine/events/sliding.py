@@ -14,7 +14,7 @@ from typing import Final
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import FRICTION
-from gearidae.engine.events.record import record
+from gearidae.engine.events.record import note_directions, record_changes
 from gearidae.engine.friction.forces import NO_FORCE, Shafts, has_gear_element, solve_shafts
 from gearidae.engine.friction.hubs import has_hubs
 from gearidae.engine.friction.pairs import RUBS, lever_rate, levers
@@ -29,12 +29,6 @@ from gearidae.engine.model.record_types import (
 )
 from gearidae.engine.model.state import Floats, Model, Record, V, W
 from gearidae.engine.motion.shafts import forces_at_shafts, pinion_speed
-from gearidae.engine.pairs.tooth_pairs import flank_of_history
-from gearidae.records import EventKind, Flank
-
-_REVERSAL, _STICK = float(EventKind.SLIDING_REVERSAL), float(EventKind.FLANK_STICK)
-_SLIP, _GEAR_STICK = float(EventKind.FLANK_SLIP), float(EventKind.STICK)
-_GEAR_SLIP, _NO_FLANK = float(EventKind.SLIP), float(Flank.NONE)
 
 STILL: Final = 1e-10
 """Speed over sigma/tau by which sliding reverses before that counts, so that an element just let go waits for it."""
@@ -140,12 +134,12 @@ def follow_sliding(m: Model, t: float, y: Floats, events: Floats, count: int) ->
         Whether the integration must begin anew.
     """
     passes = 0
-    _note_directions(m)
+    note_directions(m)
     while passes <= PASSES_HIGH and settle_sliding(m, t, y, False):
         passes += 1
     if passes > PASSES_HIGH:
         m.state.reversals = REVERSALS_HIGH + 1
-    return _record_changes(m, t, events, count), passes > 0
+    return record_changes(m, t, events, count), passes > 0
 
 
 @compiled_once(FRICTION)
@@ -213,9 +207,9 @@ def settle_sliding(m: Model, t: float, y: Floats, fresh: bool) -> bool:
 @compiled
 def follow_creeping(m: Model, t: float, y: Floats, events: Floats, count: int) -> tuple[int, bool]:
     """Bring gears to rest that creep towards it; as `follow_sliding`."""
-    _note_directions(m)
+    note_directions(m)
     stopped = stop_creeping(m, t, y)
-    return _record_changes(m, t, events, count) if stopped else count, stopped
+    return record_changes(m, t, events, count) if stopped else count, stopped
 
 
 @compiled_once(FRICTION)
@@ -377,31 +371,6 @@ def _set_slip(m: Model, kind: int, history: int, slip: float) -> None:
         m.state.pinion_slip = slip
     else:
         m.state.history[history].slide = STUCK if slip == 0.0 else int(slip)
-
-
-@compiled
-def _note_directions(m: Model) -> None:
-    """Note all directions of slip before the decisions of one time."""
-    before = m.work.friction
-    before.before_slip = m.state.slip
-    for k in range(m.scene.histories):
-        before.before_pair[k], before.before_slide[k] = m.state.history[k].pair, m.state.history[k].slide
-
-
-@compiled
-def _record_changes(m: Model, t: float, events: Floats, count: int) -> int:
-    """Record in what directions of slip have changed by all decisions of one time; the new number of events."""
-    before = m.work.friction
-    for k in range(m.scene.histories):
-        h, last = m.state.history[k], before.before_slide[k]
-        if h.pair != before.before_pair[k] or h.slide == last or h.slide == 0 or last == 0:
-            continue
-        kind = _STICK if h.slide == STUCK else _SLIP if last == STUCK else _REVERSAL
-        count = record(m, events, count, t, kind, h.pair, flank_of_history(m, k), h.gap_rate)
-    if has_gear_element(m) and (m.state.slip == 0.0) != (before.before_slip == 0.0):
-        kind = _GEAR_STICK if m.state.slip == 0.0 else _GEAR_SLIP
-        count = record(m, events, count, t, kind, 0, _NO_FLANK, 0.0)
-    return count
 
 
 @compiled(inline=True)
