@@ -362,9 +362,8 @@ def _rows(assessment: Assessment) -> Iterator[tuple[str, str]]:
         yield "median gear speed", f"{assessment.gear_speed:.4g} rad/s"
     if not math.isnan(assessment.torque):
         yield "estimated drive torque", with_prefix(assessment.torque, "N m", 4)
-    frequencies = [
-        with_prefix(frequency, "Hz", 4) for frequency in assessment.frequencies
-    ]  # "-" where nothing stands out
+    # "-" where nothing stands out
+    frequencies = [with_prefix(frequency, "Hz", 4) for frequency in assessment.frequencies]
     if assessment.reading:
         yield "record read with", assessment.reading
     yield "impact responses", ", ".join(frequencies) or "none"

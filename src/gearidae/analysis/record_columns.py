@@ -101,9 +101,8 @@ def _given(headings: Sequence[str], meaning: str, name: str) -> Column:
         raise ValueError(f"has no column {name!r}, or more than one, among {listed(headings)}")
     heading, unit = headings[place] if headings else f"column {place + 1}", split_unit(name)[1]
     heading_unit = split_unit(heading)[1]
-    if (
-        heading_unit and unit and heading_unit != unit and _fits(_spelt(heading_unit), _UNITS[meaning])
-    ):  # that of a voltage is replaced
+    # the unit of a voltage is replaced
+    if heading_unit and unit and heading_unit != unit and _fits(_spelt(heading_unit), _UNITS[meaning]):
         raise ValueError(f"the column {heading!r} is not in {unit}: leave the unit out")
     if not (unit := unit or heading_unit):
         raise ValueError(f"{name!r} states no unit: give it in brackets, as in {name + ' [ms]'!r}")

@@ -35,24 +35,24 @@ def _run(tokens: Sequence[str]) -> int:
     try:
         code = app.meta(tokens, exit_on_error=False, print_error=False, result_action="return_value")
     except CycloptsError as error:
-        return _print_error(f"{' '.join(str(error).split())} (see gearidae --help)", BAD_INPUT)
+        return _failed(f"{' '.join(str(error).split())} (see gearidae --help)", BAD_INPUT)
     except SceneError as error:
-        return _print_error(str(error), BAD_INPUT)
+        return _failed(str(error), BAD_INPUT)
     except GearidaeError as error:
-        return _print_error(str(error), UNFINISHED)
+        return _failed(str(error), UNFINISHED)
     except KeyboardInterrupt as interrupt:
         word, code = ENDINGS.get(stopped_by(), ("interrupted", INTERRUPTED))
-        return _print_error(f"{word}{''.join(f'; {note}' for note in interrupt.args)}", code)
+        return _failed(f"{word}{''.join(f'; {note}' for note in interrupt.args)}", code)
     except BrokenPipeError:
         stop_output()
         return DONE
     except OSError as error:
         # A disk that is full where compiled code is kept, say; of the user's own files the commands say more.
-        return _print_error(f"the system refuses to go on: {error}", UNFINISHED)
+        return _failed(f"the system refuses to go on: {error}", UNFINISHED)
     return code if isinstance(code, int) else DONE
 
 
-def _print_error(message: str, code: int) -> int:
+def _failed(message: str, code: int) -> int:
     print_error(message)
     return code
 

@@ -43,9 +43,8 @@ def fraction_of(m: Model, side: int, coast: int, pair: int, inside: float) -> Fr
     coverage = m.scene.coverage[side]
     row = coverage.values_at + int(pair + m.state.turns + side * coast) % coverage.teeth * coverage.places
     along = inside * coverage.place_scale - 0.5
-    last = min(
-        max(math.floor(along), -1), coverage.places - 1
-    )  # before the first middle, or behind the last one
+    # it stays before the middle of the first place, or behind that of the last one
+    last = min(max(math.floor(along), -1), coverage.places - 1)
     before = m.tables[row + max(last, 0)]
     change = m.tables[row + min(last + 1, coverage.places - 1)] - before
     u, rise = along - last, change * coverage.place_scale

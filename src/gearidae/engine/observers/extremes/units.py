@@ -57,16 +57,16 @@ def _exposures(m: Model) -> array[float]:
 
 def _speeds(e: SimpleNamespace, rate: float, time: float, position: float) -> dict[str, Any]:
     """Means and spreads of the speed, and how long adhesion has held the gear, scaled; see `SPEEDS_NOW`."""
-    part = [plain(speed) for speed in e.part]
-    means = [_mean(speed, rate, time, position) for speed in part]
-    spreads = [speed.highest - speed.lowest if speed.begun else math.nan for speed in part]
+    parts = [plain(part) for part in e.part]
+    means = [_mean(part, rate, time, position) for part in parts]
+    spreads = [part.highest - part.lowest if part.begun else math.nan for part in parts]
     turns = e.turn_backs if e.is_stuck else 0
     return {
         "settled_gear_speed": means[0],
         "settled_spread": spreads[0],
         "late_gear_speed": means[1],
         "late_spread": spreads[1],
-        "last_min_gear_speed": part[2].lowest if part[2].begun else math.nan,
+        "last_min_gear_speed": parts[2].lowest if parts[2].begun else math.nan,
         "turn_backs": turns,
         "time_adhering": e.adhering + (time - e.turn_back_time if turns > 1 else 0.0),
     }
