@@ -10,6 +10,7 @@ from gearidae.engine.backend import solve
 from gearidae.engine.events.events import chatters
 from gearidae.engine.events.sliding import REVERSALS_HIGH, begin_sliding, rest_reserve
 from gearidae.engine.friction.hubs import Mesh, consistent_loads, pin_force, vector_sum
+from gearidae.engine.friction.pairs import levers
 from gearidae.engine.integrate.start import set_rates
 from gearidae.engine.model.record_types import AT_REST, HELD_PAIR, STUCK
 from gearidae.engine.model.state import COAST, V, W
@@ -87,6 +88,30 @@ def test_acceleration_of_a_rolling_pair_is_the_closed_form(radius):
     assert acceleration == pytest.approx(rolling(m, 0.5 * radius)[0], rel=1e-9)
     if radius == 30e-6:
         assert acceleration == pytest.approx(2.300883e7, rel=3e-7)
+
+
+def test_a_pair_that_rolls_goes_on_rolling_while_its_levers_change():
+    """Central difference of its sliding speed along the motion: nothing, where the levers alone would let it slide."""
+    m, y = standing(HIGH.replace(ROLLING))
+    assert int(m.state.hold) == HELD_PAIR
+    y[W], h = 1.0, 1e-4
+
+    def lever_pair(state):
+        forces_at_shafts(m, 0.0, state)
+        return levers(m, float(m.work.pair_forces.pair[0].position))
+
+    def sliding(state, arms):
+        return arms[0] * (state[V] + state[W]) - arms[1] * state[W]
+
+    arms = lever_pair(y)
+    y[V] = (arms[1] / arms[0] - 1.0) * y[W]  # it rolls
+    rates = np.zeros_like(y)
+    set_rates(m, 0.0, y, rates)
+    ahead, behind = y + h * rates, y - h * rates
+    by_levers = (sliding(y, lever_pair(ahead)) - sliding(y, lever_pair(behind))) / (2.0 * h)
+    changes = (sliding(ahead, lever_pair(ahead)) - sliding(behind, lever_pair(behind))) / (2.0 * h)
+    assert abs(by_levers) > 1e-4
+    assert abs(changes) < 1e-6 * abs(by_levers)
 
 
 @pytest.mark.parametrize(("backend", "method"), [("native", "auto"), ("native", "bdf"), ("sksundae", "auto")])
