@@ -27,8 +27,8 @@ def _refuse_vacuous_comparisons():
     compared = pytest.approx
 
     def approx(expected, rel=None, **tolerances):
-        told = tolerances.get("abs") is not None
-        if not told and isinstance(expected, Real) and 0.0 < abs(expected) < SMALL:
+        explicit = tolerances.get("abs") is not None
+        if not explicit and isinstance(expected, Real) and 0.0 < abs(expected) < SMALL:
             raise ValueError(f"say abs=0, or what is allowed: 1e-12 is much beside {expected}")
         return compared(expected, rel=rel, **tolerances)
 

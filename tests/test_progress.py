@@ -119,10 +119,10 @@ def test_narrow_terminals_show_the_time_that_remains(columns, shown, monkeypatch
 
 
 def test_a_function_is_told():
-    told = []
-    with progress.run_progress(lambda *what: told.append(what), 1.0) as report:
+    calls = []
+    with progress.run_progress(lambda *what: calls.append(what), 1.0) as report:
         report(0.5, 2)
-    assert told == [(0.5, 2)]
+    assert calls == [(0.5, 2)]
 
 
 @pytest.mark.parametrize(
@@ -154,12 +154,12 @@ def test_times_are_said_as_people_say_them(seconds, words):
 def test_a_long_run_is_announced_once_by_the_rate_of_its_first_second(reached, said, monkeypatch, caplog):
     clock = iter([5.0 + 0.66667 * number for number in range(len(reached))])
     monkeypatch.setattr(progress, "monotonic", lambda: next(clock))
-    told = []
-    with progress.run_progress(lambda *what: told.append(what), 0.3) as report:
+    calls = []
+    with progress.run_progress(lambda *what: calls.append(what), 0.3) as report:
         for time_reached in reached:
             report(time_reached, 0)
     assert [record.getMessage() for record in caplog.records] == said
-    assert len(told) == len(reached)
+    assert len(calls) == len(reached)
 
 
 def test_a_run_without_progress_announces_it_too(monkeypatch, caplog):

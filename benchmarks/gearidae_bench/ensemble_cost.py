@@ -10,7 +10,7 @@ where it is installed, half a second) are not of a run. Cores in use are of this
 processor times mean something.
 
 Two cores of a processor may be two threads of one: then the engine itself takes longer in each of them. What the
-machine can do is told by as many processes that share nothing, with a part of the members each.
+machine can do is measured by as many processes that share nothing, with a part of the members each.
 """
 
 from __future__ import annotations

@@ -56,7 +56,7 @@ Counts = NDArray[np.int64]
 
 @compiled()
 def _is_held(m: Model) -> bool:
-    """Whether all that is dry holds the gear at rest."""
+    """Whether dry friction holds the gear at rest."""
     return bool(m.state.hold == HELD_GEAR or m.state.hold == AT_REST)
 
 

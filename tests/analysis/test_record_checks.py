@@ -94,7 +94,7 @@ def image(frequency, rate):
     return abs(frequency - rate * round(frequency / rate))
 
 
-def told(fraction, rate, numbers=range(4)):
+def record_with(fraction, rate, numbers=range(4)):
     """A record of a fraction as its samples show it, with the fraction that explains it without images."""
     true = ring_set(fraction, numbers=numbers)
     shown = np.array([image(f, rate) for f in true.frequency])
@@ -103,7 +103,7 @@ def told(fraction, rate, numbers=range(4)):
 
 def test_an_image_that_another_fraction_explains_is_named():
     """At 9 kHz the first two impacts of 0.55, 6.6 and 10.4 kHz, show as 2.4 and 1.4 kHz."""
-    record = told(0.55, 9e3, range(1))
+    record = record_with(0.55, 9e3, range(1))
     fit = first_explanation(model(), record, "start")
     assert fit.explains
     assert fit.fractions[fit.best] > 0.75  # what it would be mistaken for
@@ -117,7 +117,7 @@ def test_an_image_that_another_fraction_explains_is_named():
 
 
 def test_a_sequence_that_no_image_explains_is_believed():
-    record = told(0.97, 100e3)
+    record = record_with(0.97, 100e3)
     fit = first_explanation(model(), record, "start")
     assert record_checks.alias(model(), record, fit, 100e3, math.inf) == ""
 

@@ -165,8 +165,8 @@ def test_a_verdict_is_the_same_however_a_run_is_sampled_and_to_whatever_toleranc
     scene = gd.preset("teodorescu2009_low_speed").replace({"coating.sam_fraction": fraction})
     ways = [{"samples": 5}, {"samples": 301}, {"samples": 30001}, {"samples": "off"}]
     ways += [{"samples": 5, "rtol": rtol} for rtol in (1e-5, 1e-7, 1e-9)]
-    told = {outcomes(gd.simulate(scene, t_end=0.3, **way))[0].words for way in ways}
-    assert len(told) == 1, told
+    sentences = {outcomes(gd.simulate(scene, t_end=0.3, **way))[0].words for way in ways}
+    assert len(sentences) == 1, sentences
 
 
 def test_impacts_are_counted_run_by_run():

@@ -24,14 +24,14 @@ SCENES = {
 }
 
 
-def told(scene, **changes):
+def words_of(scene, **changes):
     (outcome,) = outcomes(gd.simulate(scene.replace({f"run.{key}": value for key, value in changes.items()})))
     return outcome.words, getattr(outcome, "mesh_exits", None), getattr(outcome, "stick_time", None)
 
 
 @pytest.mark.parametrize("name", SCENES)
 def test_samples_have_no_part_in_the_words(name):
-    first, *others = (told(SCENES[name], samples=samples) for samples in ("off", 5, 301, 30_001))
+    first, *others = (words_of(SCENES[name], samples=samples) for samples in ("off", 5, 301, 30_001))
     for other in others:
         assert repr(other) == repr(first)  # to the last bit; NaN where it has not stuck
 
@@ -39,7 +39,7 @@ def test_samples_have_no_part_in_the_words(name):
 @pytest.mark.parametrize("name", SCENES)
 def test_the_tolerance_has_no_part_in_the_words(name):
     """A gear sticks within a millisecond of where it does so at 1e-9: the words carry no digit beyond that."""
-    loose, usual, tight = (told(SCENES[name], samples="off", rtol=rtol) for rtol in (1e-5, 1e-6, 1e-9))
+    loose, usual, tight = (words_of(SCENES[name], samples="off", rtol=rtol) for rtol in (1e-5, 1e-6, 1e-9))
     assert loose[:2] == usual[:2] == tight[:2]
     for other in (loose, usual):
         assert other[2] == pytest.approx(tight[2], abs=5e-4, nan_ok=True)

@@ -142,7 +142,12 @@ def test_statistics_are_attributes(make_solution):
     solution = make_solution(LOW)
     attributes = to_dataset(LOW, solution).attrs
     for field in fields(Statistics):
-        if field.name not in ("skipped", "flight_steps", "ending", "fold_gap"):  # told by skipped and status
+        if field.name not in (
+            "skipped",
+            "flight_steps",
+            "ending",
+            "fold_gap",
+        ):  # follow from skipped and status
             assert attributes[field.name] == getattr(solution.statistics, field.name)
     assert json.loads(attributes["skipped"]) == {"coast_flank": 1}
     assert (attributes["status"], attributes["message"]) == ("finished", "")

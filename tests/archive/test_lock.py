@@ -1,4 +1,4 @@
-"""Who is writing an archive: told to all who ask, forgotten when the writer ends, and without traces."""
+"""Who is writing an archive: known to all processes, forgotten when the writer ends, and without traces."""
 
 from __future__ import annotations
 

@@ -71,7 +71,7 @@ def test_outcome_and_summary(long, lengths):
     opened, ds = long
     assert_same(outcomes(opened), outcomes(ds))
     piecewise, whole = summary_module.summary_of(opened), summary_module.summary_of(ds)
-    assert piecewise.as_plain() == whole.as_plain()  # in which what is not told, NaN, equals itself
+    assert piecewise.as_plain() == whole.as_plain()  # in which NaN, of what is not known, equals itself
     assert 1 < max(lengths) <= PIECE + 2  # pieces of the summary overlap
 
 

@@ -50,23 +50,23 @@ def braking():
 
 
 def test_dry_resistance_stops_the_gear_and_the_books_balance(braking):
-    told = summary_of(braking)
-    assert told.held_by == "dry resistance"
-    assert told.sticks == told.slips + 1
+    summary = summary_of(braking)
+    assert summary.held_by == "dry resistance"
+    assert summary.sticks == summary.slips + 1
     stuck = braking.event_time[braking.event_kind == 6][-1].item()
-    assert told.time_at_rest == pytest.approx(14e-3 - stuck, rel=1e-9, abs=0.0)  # a sum of steps
+    assert summary.time_at_rest == pytest.approx(14e-3 - stuck, rel=1e-9, abs=0.0)  # a sum of steps
     gears = gd.Scene.from_dict(json.loads(braking.attrs["scene"])).gears
     kinetic = 0.5 * (gears.gear_inertia + gears.pinion_inertia * 16.0) * 2898.0**2  # teeth 76 to 19
     # the pinion still trembles against the tooth that holds it
     trembling = 0.5 * gears.pinion_inertia * braking.pinion_speed[-1].item() ** 2
     assert trembling < 1e-9 * kinetic
-    assert told.kinetic_change == pytest.approx(trembling - kinetic, rel=1e-12, abs=0.0)
+    assert summary.kinetic_change == pytest.approx(trembling - kinetic, rel=1e-12, abs=0.0)
     # dry resistance of 3e-11 N m over the angle turned
     turned = (braking.gear_angle[-1] - braking.gear_angle[0]).item()
-    assert told.dry_loss == pytest.approx(3e-11 * turned, rel=1e-12, abs=0.0)
+    assert summary.dry_loss == pytest.approx(3e-11 * turned, rel=1e-12, abs=0.0)
     # what is lost in the contacts is small, and more than the error of the sum: adhesion only takes
-    assert 0.0 < told.contact_loss < 1e-3 * told.dry_loss
-    assert told.residual < 0.5 * told.contact_loss
+    assert 0.0 < summary.contact_loss < 1e-3 * summary.dry_loss
+    assert summary.residual < 0.5 * summary.contact_loss
 
 
 def test_work_of_a_schedule_on_a_free_pinion():
@@ -76,32 +76,34 @@ def test_work_of_a_schedule_on_a_free_pinion():
         {"drive.schedule": [[0.0, 0.0], [duration, torque]], "run.duration": duration, "run.rtol": 1e-9}
     )
     ds = gd.simulate(scene)
-    told = summary_of(ds)
+    summary = summary_of(ds)
     work = (torque * duration) ** 2 / (8.0 * scene.gears.pinion_inertia)
-    assert told.impacts == 0
-    assert told.drive_work == pytest.approx(work, rel=1e-5, abs=0.0)
-    assert told.kinetic_change == pytest.approx(work, rel=1e-5, abs=0.0)
-    assert abs(told.contact_loss) < 1e-5 * work
-    assert told.residual < 1e-5 * work
+    assert summary.impacts == 0
+    assert summary.drive_work == pytest.approx(work, rel=1e-5, abs=0.0)
+    assert summary.kinetic_change == pytest.approx(work, rel=1e-5, abs=0.0)
+    assert abs(summary.contact_loss) < 1e-5 * work
+    assert summary.residual < 1e-5 * work
 
 
 def test_held_at_rest_from_the_beginning_to_the_end():
     ds = gd.simulate(FREE.replace({"load.torque": 1e-15}))
-    told = summary_of(ds)
-    assert told.time_at_rest == pytest.approx(1e-3, rel=1e-12)
-    assert told.held_by == "dry resistance"
-    assert (told.top_speed, told.sticks) == (0.0, 0)
-    assert math.isnan(told.time_to_speed)
+    summary = summary_of(ds)
+    assert summary.time_at_rest == pytest.approx(1e-3, rel=1e-12)
+    assert summary.held_by == "dry resistance"
+    assert (summary.top_speed, summary.sticks) == (0.0, 0)
+    assert math.isnan(summary.time_to_speed)
 
 
 def test_start_up_rests_until_the_first_slip_and_then_comes_to_speed():
     scene = gd.load_case(CASES / "start_up.toml").replace({"run.duration": "12 ms", "run.samples": 12_001})
     ds = gd.simulate(scene)
-    told = summary_of(ds)
-    assert told.time_at_rest == pytest.approx(ds.event_time[ds.event_kind == 7][0].item(), rel=1e-9)
-    assert 0.0031 - 2e-4 < told.time_at_rest < told.time_to_speed < 0.012  # torque over ratio: 31 % of 10 ms
+    summary = summary_of(ds)
+    assert summary.time_at_rest == pytest.approx(ds.event_time[ds.event_kind == 7][0].item(), rel=1e-9)
+    assert (
+        0.0031 - 2e-4 < summary.time_at_rest < summary.time_to_speed < 0.012
+    )  # torque over ratio: 31 % of 10 ms
     first = np.flatnonzero(ds.gear_speed >= 0.95 * ds.gear_speed.max())[0]
-    assert told.time_to_speed == ds.time[first]
+    assert summary.time_to_speed == ds.time[first]
 
 
 def test_adhesion_holds_a_worn_gear_and_lets_a_coated_one_go():
@@ -129,13 +131,13 @@ def test_pieces_do_not_matter(braking, monkeypatch):
 
 def test_without_samples_and_of_rollers():
     worn = LOW.replace({"coating.sam_fraction": 0.4})
-    told, sampled = (summary_of(gd.simulate(worn.replace({"run.samples": n}))) for n in ("off", 301))
-    assert math.isnan(told.time_to_speed)  # that of a sample
+    summary, sampled = (summary_of(gd.simulate(worn.replace({"run.samples": n}))) for n in ("off", 301))
+    assert math.isnan(summary.time_to_speed)  # that of a sample
     for name, value in sampled.as_plain().items():  # all else is kept by the solver
         if name != "time_to_speed":
-            assert told.as_plain()[name] == value, name
-    assert told.drive_work > 0.0
-    assert told.impacts > 0
+            assert summary.as_plain()[name] == value, name
+    assert summary.drive_work > 0.0
+    assert summary.impacts > 0
     assert summary_of(gd.simulate(gd.preset("roller_slow"))) is None
 
 
@@ -145,25 +147,25 @@ def test_the_energies_are_those_summed_over_the_samples(braking):
     Samples every 20 ns: what contacts lose is a hundredth of the other energies, and an impact takes a microsecond.
     """
     dense = gd.simulate(braking.gearidae.scene.replace({"run.samples": 700_001}))
-    told = summary_of(dense)
-    assert told.contact_loss == summary_of(braking).contact_loss  # whatever is sampled
+    summary = summary_of(dense)
+    assert summary.contact_loss == summary_of(braking).contact_loss  # whatever is sampled
     summed, coarse = (
         SampledWork(dense.gearidae.scene, dense.isel(time=slice(None, None, n))) for n in (1, 2)
     )
     for name in ("drive_work", "drag_loss", "dry_loss", "kinetic_change"):
-        assert getattr(told, name) == pytest.approx(getattr(summed, name), rel=1e-5, abs=0.0)
+        assert getattr(summary, name) == pytest.approx(getattr(summed, name), rel=1e-5, abs=0.0)
     error = abs(summed.contact_loss - coarse.contact_loss)
-    assert error < 0.02 * told.contact_loss
-    assert told.contact_loss == pytest.approx(summed.contact_loss, rel=0.0, abs=2.0 * error)
-    assert told.residual < error
+    assert error < 0.02 * summary.contact_loss
+    assert summary.contact_loss == pytest.approx(summed.contact_loss, rel=0.0, abs=2.0 * error)
+    assert summary.residual < error
 
 
 def test_of_a_run_without_an_energy_balance_no_energies_are_told(braking):
     partial = braking.drop_vars("residual")
-    told, whole = summary_of(partial).as_plain(), summary_of(braking).as_plain()
-    energies = {name for name, value in told.items() if value is None}
+    summary, whole = summary_of(partial).as_plain(), summary_of(braking).as_plain()
+    energies = {name for name, value in summary.items() if value is None}
     assert energies == {*ENERGY_BALANCE, "contact_loss", "friction_loss", "efficiency"}
-    assert {name: value for name, value in told.items() if name not in energies} == {
+    assert {name: value for name, value in summary.items() if name not in energies} == {
         name: value for name, value in whole.items() if name not in energies
     }
 
@@ -206,8 +208,8 @@ def test_the_extremes_of_an_unfinished_run_are_those_of_its_newest_checkpoint(tm
     assert {name: getattr(extremes, name) for name in numbers} == pytest.approx(
         numbers, rel=1e-12, abs=0, nan_ok=True
     )
-    told = summary_of(ds)
-    assert (told.top_speed, told.time_adhering) == (extremes.max_gear_speed, extremes.time_adhering)
+    summary = summary_of(ds)
+    assert (summary.top_speed, summary.time_adhering) == (extremes.max_gear_speed, extremes.time_adhering)
     (outcome,) = gd.outcomes(ds)
     assert outcome.max_speed == extremes.max_gear_speed
     assert outcome.verdict == "sticks"
@@ -231,19 +233,25 @@ def test_what_friction_takes_and_holds():
         }
     )
     ds = gd.simulate(scene)
-    told, kept = summary_of(ds), ds.gearidae.energy_balance
-    assert told.held_by == "dry resistance and flank friction"
+    summary, kept = summary_of(ds), ds.gearidae.energy_balance
+    assert summary.held_by == "dry resistance and flank friction"
     speed = ds.gear_speed.values
-    assert told.time_at_rest == pytest.approx((speed == 0.0).mean() * 40e-6, abs=2e-7)
+    assert summary.time_at_rest == pytest.approx((speed == 0.0).mean() * 40e-6, abs=2e-7)
     rows = {name: (value, remark) for name, value, remark in summary_rows(ds)}
-    assert rows["efficiency"][0] == f"{100.0 * told.efficiency:.4g} %"
+    assert rows["efficiency"][0] == f"{100.0 * summary.efficiency:.4g} %"
     assert "held by dry resistance and flank friction at the end" in rows["time at rest"][1]
-    assert rows["drive friction loss"][0] == with_prefix(told.friction_loss, "J", 5)
-    assert 0.0 < told.friction_loss == kept["drive_friction_loss"] + kept["coast_friction_loss"]
-    lost = told.drag_loss + told.dry_loss + told.damping_loss + told.adhesion_loss + told.friction_loss
-    assert told.efficiency == pytest.approx((told.drag_loss + told.dry_loss) / lost, rel=1e-12)
-    supplied = told.drive_work - told.kinetic_change
-    assert lost + told.contact_loss - told.adhesion_loss == pytest.approx(supplied, rel=1e-4, abs=0.0)
+    assert rows["drive friction loss"][0] == with_prefix(summary.friction_loss, "J", 5)
+    assert 0.0 < summary.friction_loss == kept["drive_friction_loss"] + kept["coast_friction_loss"]
+    lost = (
+        summary.drag_loss
+        + summary.dry_loss
+        + summary.damping_loss
+        + summary.adhesion_loss
+        + summary.friction_loss
+    )
+    assert summary.efficiency == pytest.approx((summary.drag_loss + summary.dry_loss) / lost, rel=1e-12)
+    supplied = summary.drive_work - summary.kinetic_change
+    assert lost + summary.contact_loss - summary.adhesion_loss == pytest.approx(supplied, rel=1e-4, abs=0.0)
     waiting = {"initial.gear_speed": 0.0, "drive.torque": 1e-14, "initial.gap": 1e-7, "run.duration": 1e-7}
     still = summary_of(gd.simulate(scene.replace(waiting)))
     assert still.held_by == "dry resistance"  # the pinion moves

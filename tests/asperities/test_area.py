@@ -83,8 +83,8 @@ def test_the_rule_of_the_area_is_its_integral(law):
 def test_tables_of_single_asperities_hold_the_area(law):
     table = asperity_table(ContactArea(law), 10.0)
     for displacement in np.linspace(-law.detach, 9.0, 60):
-        told = asperity_value(table, 0, float(displacement))[0]
-        assert told == pytest.approx(float(law.area(displacement)), abs=1e-8)
+        computed = asperity_value(table, 0, float(displacement))[0]
+        assert computed == pytest.approx(float(law.area(displacement)), abs=1e-8)
 
 
 class WithoutAdhesion(AsperityLaw):

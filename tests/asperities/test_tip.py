@@ -35,7 +35,7 @@ def test_tabor_parameter(silicon, coated):
     [(50.0, "jkr"), (4.5, "jkr"), (4.49, "transition"), (0.15, "transition"), (0.149, "dmt"), (0.0, "dmt")],
 )
 def test_tabor_regime(mu, regime):
-    """Bounds of one digit, 5 and 0.1 (Johnson and Greenwood 1997), told from the numbers that round to them."""
+    """Bounds of one digit, 5 and 0.1 (Johnson and Greenwood 1997), unlike the numbers that round to them."""
     assert tabor_regime(mu) == regime
 
 

@@ -61,11 +61,11 @@ def test_beyond_its_table_a_load_goes_on_as_hertz_s_and_below_the_fold_it_stays(
 
 def test_energies_of_one_asperity():
     """Joining loses 0.84661 and letting go 4/45 of pull-off load times stretch limit; Maugis tends to that."""
-    told, law = NUMBERS["one_asperity"], law_of("jkr", SCENE.surface)
+    expected, law = NUMBERS["one_asperity"], law_of("jkr", SCENE.surface)
     unit = law.pull_off * law.detach
-    assert law.loss / unit == pytest.approx(told["loss"], rel=1e-12)
-    assert law.detachment_energy / unit == pytest.approx(told["letting_go"], rel=1e-12)
-    assert (law.loss - law.detachment_energy) / unit == pytest.approx(told["joining"], rel=1e-12)
+    assert law.loss / unit == pytest.approx(expected["loss"], rel=1e-12)
+    assert law.detachment_energy / unit == pytest.approx(expected["letting_go"], rel=1e-12)
+    assert (law.loss - law.detachment_energy) / unit == pytest.approx(expected["joining"], rel=1e-12)
     jkr, soft = asperity("jkr"), asperity("maugis", tabor=1e5)
     assert soft.detachment_energy == pytest.approx(jkr.detachment_energy, rel=1e-6)
     # where it lets go before it touches, P = -pi/2 lambda C^2 on the whole branch: pi lambda (8 lambda/3 pi)^4 / 24
@@ -74,23 +74,23 @@ def test_energies_of_one_asperity():
     assert hard.detachment_energy == pytest.approx(math.pi * hard.zone * fold**4 / 24.0, rel=1e-12)
     for surface, name in ((SCENE.surface, "bare"), (SCENE.coated_surface, "coated")):
         tip = Tip(surface, 450e-9)
-        assert tip.joining + tip.letting_go == pytest.approx(told[name]["loss"], rel=1e-12, abs=0)
-        assert tip.detach == pytest.approx(told[name]["dc"], rel=1e-12, abs=0)
+        assert tip.joining + tip.letting_go == pytest.approx(expected[name]["loss"], rel=1e-12, abs=0)
+        assert tip.detach == pytest.approx(expected[name]["dc"], rel=1e-12, abs=0)
 
 
 def test_arcs_and_radii_along_the_path():
-    told, g = NUMBERS["geometry"], SCENE.geometry
+    expected, g = NUMBERS["geometry"], SCENE.geometry
     ends = [0.0, g.path_length]
-    np.testing.assert_allclose(flank_arc(g, ends), [told["s_lo"], told["s_hi"]], rtol=1e-12)
-    np.testing.assert_allclose(flank_arc(g, g.approach), told["pitch_point_arc"], rtol=1e-12)
+    np.testing.assert_allclose(flank_arc(g, ends), [expected["s_lo"], expected["s_hi"]], rtol=1e-12)
+    np.testing.assert_allclose(flank_arc(g, g.approach), expected["pitch_point_arc"], rtol=1e-12)
     at = [0.0, g.approach, g.path_length]
     np.testing.assert_allclose(
-        curvature_radii(g, at)[2], [told["R_start"], told["R_pitch"], told["R_end"]], rtol=1e-12
+        curvature_radii(g, at)[2], [expected["R_start"], expected["R_pitch"], expected["R_end"]], rtol=1e-12
     )
     inside = np.linspace(0.0, g.path_length, 7)
     np.testing.assert_allclose(place_of_arc(g, flank_arc(g, inside)), inside, rtol=1e-12, atol=1e-18)
     outside = flank_arc(g, [-1e-6, g.path_length + 1e-6])
-    np.testing.assert_allclose(outside, [told["s_lo"], told["s_hi"]], rtol=1e-12)
+    np.testing.assert_allclose(outside, [expected["s_lo"], expected["s_hi"]], rtol=1e-12)
 
 
 @pytest.mark.parametrize("xi", [2e-6, 9e-6, 18e-6])
@@ -131,7 +131,7 @@ def test_rolling_at_a_fixed_gap_costs_each_asperity_its_loss(name):
     """The compiled load over 8,000 stratified heights; per arc 0.93550 Pc dc N L Q(g/sigma) in closed form."""
     surface = SCENE.surface if name == "bare" else SCENE.coated_surface
     law, gap = law_of("jkr", surface), 2.0
-    told = next(
+    expected = next(
         row
         for row in NUMBERS["rolling_at_fixed_gap"]
         if row["surface"] == name and row["g_over_sigma"] == gap
@@ -150,19 +150,19 @@ def test_rolling_at_a_fixed_gap_costs_each_asperity_its_loss(name):
             force += sign * float((0.5 * last * w * 2.0 * root * loads).sum())
     unit = asperity_of(surface).hertz_factor * surface.roughness**2.5
     rolling = surface.asperity_density * 2e-6 * above * unit * abs(force) / strata
-    assert rolling == pytest.approx(told["rolling_force_closed"], rel=1e-6, abs=0)
+    assert rolling == pytest.approx(expected["rolling_force_closed"], rel=1e-6, abs=0)
 
 
 def test_approach_and_parting_of_a_roller():
     """Events by quadrature in 30 digits; whatever happens between, each asperity costs 0.93550 Pc dc."""
-    told = NUMBERS["roller"]["bare"]
+    expected = NUMBERS["roller"]["bare"]
     tips = [Tip(SCENE.surface, radius) for radius in (450e-9, 300e-9, 600e-9)]
     places, heights = [0.0, 0.12e-6, -0.2e-6], [15e-9, 14e-9, 17.5e-9]
     events, (_, speed), loss = drop(tips, places, heights, 5e-6, 6e-10, 0.01, 40e-9)
     assert [(kind, a) for _, kind, a, _ in events] == [
-        (event["kind"], event["asperity"]) for event in told["events"]
+        (event["kind"], event["asperity"]) for event in expected["events"]
     ]
-    for (t, _, _, v), event in zip(events, told["events"], strict=True):
+    for (t, _, _, v), event in zip(events, expected["events"], strict=True):
         assert t == pytest.approx(event["t"], rel=1e-10, abs=0)
         assert v == pytest.approx(event["speed"], rel=1e-9, abs=0)
     assert 6e-10 * speed**2 == pytest.approx(6e-10 * 0.01**2 - 2.0 * loss, rel=1e-9, abs=0)

@@ -166,7 +166,7 @@ def test_another_thickness_and_pairing_may_go_on():
     assert abs(balance["residual"]) <= balance["residual_bound"]
 
 
-# -- what is told ----------------------------------------------------------------------------------------------------
+# -- what is reported ------------------------------------------------------------------------------------------------
 
 
 def test_estimates_count_every_material_at_its_own_gap():

@@ -61,8 +61,8 @@ def first_runs(tmp_path_factory):
     shutil.copytree(kept, folder / "gearidae" / kept.name, ignore=shutil.ignore_patterns(*MISSING))
     runs = {}
     for model in MODELS:
-        told = run(folder, model)
-        runs[model] = told, {p: p.stat().st_mtime_ns for p in folder.rglob("*.nb*")}
+        process = run(folder, model)
+        runs[model] = process, {p: p.stat().st_mtime_ns for p in folder.rglob("*.nb*")}
     return folder, runs
 
 
@@ -71,9 +71,9 @@ def test_what_is_compiled_is_said(first_runs):
     """What elastic contacts need is compiled with the first of them, and not before; exposures are in neither run."""
     _, runs = first_runs
     for model, message in zip(MODELS, ("the solver", "elastic contacts"), strict=True):
-        told, kept = runs[model]
-        assert told.stderr.count("compiling") == told.stderr.count("functions compiled in") >= 1
-        assert f"compiling {message} for this machine" in told.stderr
+        process, kept = runs[model]
+        assert process.stderr.count("compiling") == process.stderr.count("functions compiled in") >= 1
+        assert f"compiling {message} for this machine" in process.stderr
         names = [path.name for path in kept]
         assert any(name.startswith("native.advance-") for name in names)
         assert any(name.startswith("nodes.node_force-") for name in names) == (model == "elastic")
@@ -151,18 +151,18 @@ PLACE = "position = (x - low) * KNOTS_PER_SIGMA"
 
 def test_environments_of_the_same_sources_share(tmp_path):
     cache, names = tmp_path / "cache", ("one", "other")
-    told = [run(cache, "", SMALL, copied(tmp_path / name)).stdout.split() for name in names]
-    for (file, *_), name in zip(told, names, strict=True):
+    outputs = [run(cache, "", SMALL, copied(tmp_path / name)).stdout.split() for name in names]
+    for (file, *_), name in zip(outputs, names, strict=True):
         assert Path(file).is_relative_to(tmp_path / name)
-    assert told[0][1] == told[1][1]
-    assert int(told[0][2]) > 0
-    assert told[1][2] == "0"
-    assert told[0][3] == told[1][3]
+    assert outputs[0][1] == outputs[1][1]
+    assert int(outputs[0][2]) > 0
+    assert outputs[1][2] == "0"
+    assert outputs[0][3] == outputs[1][3]
     edit(tmp_path / "other")
     edited = run(cache, "", SMALL, {"PYTHONPATH": str(tmp_path / "other")}).stdout.split()
-    assert edited[1] != told[1][1]
+    assert edited[1] != outputs[1][1]
     assert int(edited[2]) > 0
-    assert edited[3] != told[1][3]
+    assert edited[3] != outputs[1][3]
 
 
 def test_what_cannot_be_kept_is_compiled_anew_and_never_stale(tmp_path):
@@ -172,9 +172,9 @@ def test_what_cannot_be_kept_is_compiled_anew_and_never_stale(tmp_path):
     first, same = (run(tmp_path / "file", "", SMALL, environment) for _ in range(2))
     edit(tmp_path / "one")
     edited = run(tmp_path / "file", "", SMALL, environment)
-    for told in (first, same, edited):
-        assert told.stderr.count("compiled code cannot be kept") == 1
-        assert int(told.stdout.split()[2]) > 0
+    for process in (first, same, edited):
+        assert process.stderr.count("compiled code cannot be kept") == 1
+        assert int(process.stdout.split()[2]) > 0
     assert first.stdout == same.stdout
     assert edited.stdout.split()[3] != first.stdout.split()[3]
     assert not list((tmp_path / "one").rglob("*.nb?"))

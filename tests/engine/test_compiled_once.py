@@ -226,11 +226,11 @@ def test_kept_callers_find_what_they_call_in_another_process(tmp_path):
     """Each function is compiled once, in the first process; the second has it at another address."""
     (tmp_path / "kept.py").write_text(KEPT)
     program = f"import sys; sys.path.insert(0, {str(tmp_path)!r})\n{COUNTING}{USED}"
-    told = [
+    lines = [
         subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout
         for _ in range(2)
     ]
-    first, second = (line.rstrip("\n").split(maxsplit=2) for line in told)
+    first, second = (line.rstrip("\n").split(maxsplit=2) for line in lines)
     assert first[0] == second[0] == "12.0"
     assert int(first[1]) > 0
     assert second[1] == "0"

@@ -114,8 +114,8 @@ def test_ten_listed_asperities_with_friction():
     )
     solution = run(scene)
     speeds = solution.samples["gear_speed"]
-    told = {1: 2865.448535, 2: 2978.889511, 4: 2998.071011, 5: 3062.433161}
-    for sample, speed in told.items():
+    expected = {1: 2865.448535, 2: 2978.889511, 4: 2998.071011, 5: 3062.433161}
+    for sample, speed in expected.items():
         assert speeds[sample] == pytest.approx(speed, rel=0, abs=2e-6)
     assert solution.samples["transmission_error"][5] == pytest.approx(8.846217969e-8, rel=2e-9, abs=0)
     assert abs(solution.balance.residual) < 1e-9 * solution.balance.drive_work
@@ -235,8 +235,8 @@ def test_the_limit_of_the_mean_law_is_strength_times_area(f):
     for noted in m.work.pair_forces.pair[: m.work.pair_forces.count]:
         radius = curvature_radii(GEOMETRY, float(noted["position"]) * GEOMETRY.base_pitch)[2]
         scale = HIGH.gears.face_width * math.sqrt(2.0 * radius * sigma) * surface.asperity_density
-        told = 1e7 * scale * mean / float(m.scene.force_unit)
-        assert float(noted["limit"]) == pytest.approx(told, rel=1e-8)
+        expected = 1e7 * scale * mean / float(m.scene.force_unit)
+        assert float(noted["limit"]) == pytest.approx(expected, rel=1e-8)
 
 
 def test_the_limit_of_a_population_is_that_of_its_asperities():
@@ -254,10 +254,10 @@ def test_the_limit_of_a_population_is_that_of_its_asperities():
             if overlap > 0.0:
                 surface = scene.coated_surface.model_copy(update={"asperity_radius": radius})
                 areas += area_of_tip(surface, overlap)
-    told = 1e7 * areas / float(m.scene.force_unit)
+    expected = 1e7 * areas / float(m.scene.force_unit)
     limits = m.work.pair_forces.pair[: m.work.pair_forces.count]["limit"]
     assert areas > 0.0
-    assert limits.sum() == pytest.approx(told, rel=1e-9)
+    assert limits.sum() == pytest.approx(expected, rel=1e-9)
 
 
 def test_rates_of_limits_are_those_along_the_motion():

@@ -125,10 +125,10 @@ def test_datasets_go_without(tmp_path):
     ds = gd.simulate(scene, archive=tmp_path / "run.nc")
     assert ds.gearidae.energy_balance is None
     assert np.isnan(imbalance_of(ds))
-    told, other = (dataset.gearidae.account.as_plain() for dataset in (ds, gd.simulate(GEARS)))
-    energies = {name for name, value in told.items() if value != other[name]}
+    with_observers, other = (dataset.gearidae.account.as_plain() for dataset in (ds, gd.simulate(GEARS)))
+    energies = {name for name, value in with_observers.items() if value != other[name]}
     assert "residual" in energies
-    assert all(told[name] is None for name in energies)
+    assert all(with_observers[name] is None for name in energies)
     gd.write_report(ds, tmp_path / "report.html")
     assert ">adhesion loss<" not in (tmp_path / "report.html").read_text()
     gd.write_report(gd.simulate(GEARS), tmp_path / "whole.html")

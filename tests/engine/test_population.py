@@ -64,19 +64,19 @@ def asperity_events(solution):
 @pytest.mark.parametrize(("backend", "rtol", "allowed"), [("native", 1e-11, 1e-8), ("sksundae", 1e-11, 3e-8)])
 def test_a_roller_meets_three_asperities(backend, rtol, allowed):
     """Times and speeds by quadrature in 30 digits; what is allowed is a few hundred tolerances."""
-    told = NUMBERS["roller"]["bare"]
+    expected = NUMBERS["roller"]["bare"]
     solution = run(ROLLER.replace({"run.rtol": rtol}), backend)
     places = [2, 0, 1]  # of the reference's asperities in the order of places
-    wanted = [(KINDS[event["kind"]], 0, 0, places.index(event["asperity"])) for event in told["events"]]
+    wanted = [(KINDS[event["kind"]], 0, 0, places.index(event["asperity"])) for event in expected["events"]]
     what, times = asperity_events(solution)
     assert what == [(int(kind), *rest) for kind, *rest in wanted]
-    np.testing.assert_allclose(times, [event["t"] for event in told["events"]], rtol=allowed)
+    np.testing.assert_allclose(times, [event["t"] for event in expected["events"]], rtol=allowed)
     speeds = solution.events.gap_rate[solution.events.asperity >= 0]
-    np.testing.assert_allclose(speeds, [event["speed"] for event in told["events"]], rtol=allowed)
+    np.testing.assert_allclose(speeds, [event["speed"] for event in expected["events"]], rtol=allowed)
     extremes = solution.extremes
-    assert extremes.final_speed == pytest.approx(told["rebound"], rel=allowed)
-    assert extremes.largest_mesh_force == pytest.approx(told["peak_force"], rel=allowed)
-    assert extremes.smallest_separation == pytest.approx(told["h_min"], rel=1e-8)
+    assert extremes.final_speed == pytest.approx(expected["rebound"], rel=allowed)
+    assert extremes.largest_mesh_force == pytest.approx(expected["peak_force"], rel=allowed)
+    assert extremes.smallest_separation == pytest.approx(expected["h_min"], rel=1e-8)
     assert extremes.asperity_onsets == extremes.asperity_detachments == 3
     tips = [Tip(ROLLER.surface, radius) for radius in (450e-9, 300e-9, 600e-9)]
     lost = sum(tip.joining + tip.letting_go for tip in tips)
@@ -86,49 +86,51 @@ def test_a_roller_meets_three_asperities(backend, rtol, allowed):
 
 @pytest.mark.parametrize(("backend", "rtol", "allowed"), [("native", 1e-10, 1e-6), ("sksundae", 1e-8, 1e-5)])
 def test_gears_with_ten_listed_asperities(backend, rtol, allowed):
-    told = NUMBERS["gear_explicit"]["coated"]
+    expected = NUMBERS["gear_explicit"]["coated"]
     solution = run(TEN.replace({"run.rtol": rtol}), backend)
     what, times = asperity_events(solution)
-    assert len(what) == told["n_events"]
-    first = told["events"]
+    assert len(what) == expected["n_events"]
+    first = expected["events"]
     wanted = [(int(KINDS[e["kind"]]), e["pair"], 0, e["asperity"]) for e in first]
     assert what[: len(first)] == wanted
     np.testing.assert_allclose(times[: len(first)], [e["t"] for e in first], rtol=allowed)
     for column, name in (("gear_speed", "gear_speed"), ("transmission_error", "u")):
-        np.testing.assert_allclose(solution.samples[column][1:], told[name], rtol=allowed)
-    force, most = solution.samples["mesh_force"][1:], max(told["F"])
+        np.testing.assert_allclose(solution.samples[column][1:], expected[name], rtol=allowed)
+    force, most = solution.samples["mesh_force"][1:], max(expected["F"])
     # it changes by all of itself over some nanometres, a hundredth of u
-    np.testing.assert_allclose(force, told["F"], rtol=0, atol=10.0 * allowed * most)
+    np.testing.assert_allclose(force, expected["F"], rtol=0, atol=10.0 * allowed * most)
     relief = solution.samples["gear_contact_torque"][1:] / GEARS.geometry.base_radius_gear - force
-    np.testing.assert_allclose(relief, told["Fs"], rtol=0, atol=allowed * most)
-    assert solution.samples["asperities_in_contact"][1:].tolist() == told["joined"]
-    assert solution.samples["pairs_in_contact"][1:].tolist() == told["joined"]
+    np.testing.assert_allclose(relief, expected["Fs"], rtol=0, atol=allowed * most)
+    assert solution.samples["asperities_in_contact"][1:].tolist() == expected["joined"]
+    assert solution.samples["pairs_in_contact"][1:].tolist() == expected["joined"]
     balance = solution.balance
-    losses = told["join_loss"] + told["letting_go_loss"]
+    losses = expected["join_loss"] + expected["letting_go_loss"]
     assert balance.adhesion_loss == pytest.approx(losses, rel=allowed, abs=0)
-    assert balance.drive_work == pytest.approx(told["drive_work"], rel=allowed, abs=0)
-    assert balance.drag_loss + balance.dry_loss == pytest.approx(told["drag_loss"], rel=allowed, abs=0)
-    assert balance.kinetic_change == pytest.approx(told["kinetic_change"], rel=allowed, abs=0)
-    assert balance.stored_change == pytest.approx(told["stored_change_from_free_surfaces"], rel=1e-4, abs=0)
+    assert balance.drive_work == pytest.approx(expected["drive_work"], rel=allowed, abs=0)
+    assert balance.drag_loss + balance.dry_loss == pytest.approx(expected["drag_loss"], rel=allowed, abs=0)
+    assert balance.kinetic_change == pytest.approx(expected["kinetic_change"], rel=allowed, abs=0)
+    assert balance.stored_change == pytest.approx(
+        expected["stored_change_from_free_surfaces"], rel=1e-4, abs=0
+    )
     if backend == "native":  # the quadratures of the balance keep up with formulas of high order
         assert abs(balance.residual) < 1e-10 * balance.drive_work
 
 
 def test_gears_with_a_drawn_surface():
     """With 5 % of critical damping the motion is reproducible. The balance closes to 1e-10 of the drive's work."""
-    told = NUMBERS["gear_drawn_seed0_damping_7e-6_f1"]
+    expected = NUMBERS["gear_drawn_seed0_damping_7e-6_f1"]
     scene = GEARS.replace(
         {"mesh.damping": 7e-6, "run.duration": 500e-6, "run.samples": 51, "run.rtol": 1e-10}
     )
     solution = run(scene)
-    here = [round(t / 1e-5) for t in told["time"]]
-    np.testing.assert_allclose(solution.samples["gear_speed"][here], told["gear_speed"], rtol=1e-9)
-    np.testing.assert_allclose(solution.samples["transmission_error"][here], told["u"], rtol=1e-9)
-    assert len(asperity_events(solution)[0]) == told["events"]
+    here = [round(t / 1e-5) for t in expected["time"]]
+    np.testing.assert_allclose(solution.samples["gear_speed"][here], expected["gear_speed"], rtol=1e-9)
+    np.testing.assert_allclose(solution.samples["transmission_error"][here], expected["u"], rtol=1e-9)
+    assert len(asperity_events(solution)[0]) == expected["events"]
     balance = solution.balance
-    losses = told["join_loss"] + told["letting_go_loss"]
+    losses = expected["join_loss"] + expected["letting_go_loss"]
     assert balance.adhesion_loss == pytest.approx(losses, rel=1e-9, abs=0)
-    assert balance.damping_loss == pytest.approx(told["damping_loss"], rel=1e-6, abs=0)
+    assert balance.damping_loss == pytest.approx(expected["damping_loss"], rel=1e-6, abs=0)
     assert abs(balance.residual) < 1e-10 * balance.drive_work
 
 
@@ -294,7 +296,7 @@ def _asperities_begin(checkpoint):
 
 
 @pytest.mark.parametrize(
-    ("change", "told"),
+    ("change", "expected"),
     [
         (lambda c, k: c.__setitem__(k, c[k] + 1.0), "asperities_sha256"),
         (lambda c, k: c.__setitem__(k + 4, c[k + 4] + 1.0), "places of asperities in order"),
@@ -302,14 +304,14 @@ def _asperities_begin(checkpoint):
         (lambda c, k: c.__setitem__(k + 4 + int(c[k + 4]), 110_000.0), "those of pairs that are near"),
     ],
 )
-def test_joined_asperities_that_no_run_has_left_are_refused(change, told):
+def test_joined_asperities_that_no_run_has_left_are_refused(change, expected):
     checkpoint = end_of_a_run().copy()
     first = _asperities_begin(checkpoint)
     assert checkpoint[first + 4] > 0.0
     change(checkpoint, first)
     with pytest.raises(SceneError) as refused:
         kept_at(STOPPED, checkpoint)
-    assert told in str(refused.value)
+    assert expected in str(refused.value)
 
 
 def test_a_block_of_another_length_is_refused():

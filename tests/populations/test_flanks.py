@@ -16,16 +16,16 @@ ROLLER = preset("roller_slow").replace({"contact.roughness": "discrete"})
 
 
 def test_the_preset_s_surface_is_the_one_that_a_prototype_drew():
-    told, flanks = NUMBERS["drawing_seed_0"], flanks_of(GEARS)
+    expected, flanks = NUMBERS["drawing_seed_0"], flanks_of(GEARS)
     counts = [flank.arc.size for flank in flanks]
-    assert counts[:6] == told["counts"]
-    assert sum(counts) == told["total"]
+    assert counts[:6] == expected["counts"]
+    assert sum(counts) == expected["total"]
     first = flanks[0]
-    np.testing.assert_allclose(first.arc[:3], np.array(told["first_arc_um"]) * 1e-6, rtol=1e-14)
-    np.testing.assert_allclose(first.height[:3], np.array(told["first_height_nm"]) * 1e-9, rtol=1e-14)
-    np.testing.assert_allclose(first.q[:3], told["first_q"], rtol=1e-14)
+    np.testing.assert_allclose(first.arc[:3], np.array(expected["first_arc_um"]) * 1e-6, rtol=1e-14)
+    np.testing.assert_allclose(first.height[:3], np.array(expected["first_height_nm"]) * 1e-9, rtol=1e-14)
+    np.testing.assert_allclose(first.q[:3], expected["first_q"], rtol=1e-14)
     highest = [flank.height.max() * 1e9 for flank in flanks[:6]]
-    np.testing.assert_allclose(highest, told["highest_nm"], rtol=1e-14)
+    np.testing.assert_allclose(highest, expected["highest_nm"], rtol=1e-14)
 
 
 def test_flanks_do_not_depend_on_coverage_or_torque_but_on_the_seed():

@@ -54,7 +54,7 @@ def test_a_later_start_is_the_same_motion_later():
 
 
 def rescaled(scene, length, mass, time):
-    """The same scene told in other units."""
+    """The same scene written in other units."""
     g, m, s, i = scene.gears, scene.mesh, scene.surface, scene.initial
     torque = mass * length**2 / time**2
     return scene.replace(

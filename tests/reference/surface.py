@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class PlainSurface:
-    """Bare silicon, rough by 6 nm, unless told otherwise."""
+    """Bare silicon, rough by 6 nm unless the arguments say otherwise."""
 
     youngs_modulus: float = 161e9
     poisson_ratio: float = 0.23

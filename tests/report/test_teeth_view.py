@@ -107,7 +107,7 @@ def test_embedded_states_are_samples_of_the_record(single):
         travel = SCENE.initial.mesh_phase + turned
         assert phase == pytest.approx(travel % 1.0, abs=1e-6)
         (state,) = tooth_contacts(single, sample.time.item())
-        told = {(contact.pair, contact.flank): contact for contact in state.contacts}
+        by_pair = {(contact.pair, contact.flank): contact for contact in state.contacts}
         pairs = states[at, 5:].reshape(run["places"], len(PAIR))
         nearest = pairs[np.isfinite(pairs[:, 0])]
         assert len(nearest)
@@ -115,7 +115,7 @@ def test_embedded_states_are_samples_of_the_record(single):
             sample.drive_gap.item(), rel=1e-6, abs=0.0
         )
         for pair in nearest:
-            contact = told[int(pair[0]), Flank(int(pair[1]))]
+            contact = by_pair[int(pair[0]), Flank(int(pair[1]))]
             assert pair[PAIR.index("force")] == pytest.approx(contact.force, rel=1e-6, abs=1e-30)
             assert pair[PAIR.index("coated")] == contact.states["coated"]
 

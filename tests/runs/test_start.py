@@ -494,10 +494,10 @@ def test_time_at_rest_of_a_continued_run_is_that_of_the_chain():
     scene = gd.load_case(START_UP).replace({"run.duration": "1 ms", "run.samples": "off"})
     first = gd.simulate(scene)
     second = gd.simulate(scene.replace({"run.duration": "4 ms"}), start=first)
-    told = [run.gearidae.account.time_at_rest for run in (first, second)]
+    rests = [run.gearidae.account.time_at_rest for run in (first, second)]
     slip = float(second.event_time[second.event_kind == EventKind.SLIP][0])
-    assert told[0] == pytest.approx(1e-3, rel=1e-12)
-    assert told[1] == pytest.approx(slip, rel=1e-9)
+    assert rests[0] == pytest.approx(1e-3, rel=1e-12)
+    assert rests[1] == pytest.approx(slip, rel=1e-9)
     still = gd.simulate(scene, start=first)  # held all the time, without an event of its own
     assert still.gearidae.account.time_at_rest == pytest.approx(2e-3, rel=1e-9)
 

@@ -193,7 +193,7 @@ def test_ctrl_c_keeps_the_finished_runs(monkeypatch, jobs, tmp_path):
                 options["on_progress"](1e-3, 0)
         finally:
             ended.set()
-        pytest.fail("the run was never told to end")
+        pytest.fail("the run never got the signal to end")
 
     replace_engine(monkeypatch, deed)
     with pytest.raises(KeyboardInterrupt, match=r"sweep\.nc"):

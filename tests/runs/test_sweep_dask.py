@@ -96,7 +96,7 @@ def test_workers_with_another_version(cluster, monkeypatch):
 
 
 def test_workers_without_gearidae(cluster):
-    """Each forgets it and where it is, and is told again."""
+    """Each forgets it and where it is, and receives it again."""
 
     def forget():
         import sys

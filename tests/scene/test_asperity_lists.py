@@ -53,7 +53,7 @@ def test_the_list_travels_with_its_scene(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("value", "told"),
+    ("value", "message"),
     [
         ({"arc": [1e-6]}, "needs the columns arc"),
         ({"arc": [1e-6], "height": [1e-8, 2e-8]}, "as many rows"),
@@ -74,10 +74,10 @@ def test_the_list_travels_with_its_scene(tmp_path):
         (7, "must be a table with a file"),
     ],
 )
-def test_what_is_no_list_is_refused_by_column_and_row(value, told):
+def test_what_is_no_list_is_refused_by_column_and_row(value, message):
     with pytest.raises(SceneError, match=r"contact\.asperities") as refused:
         listed(value)
-    assert told in str(refused.value)
+    assert message in str(refused.value)
 
 
 def test_a_list_needs_the_model_that_reads_it():

@@ -116,7 +116,7 @@ def test_executors_and_the_archive_do_not_matter(ensemble, tmp_path):
 
 def test_members_that_ctrl_c_has_cut_off_are_unfinished():
     def cut_off(done, total):
-        if done >= 12:  # of the twelfth run this is told while it is under way, too
+        if done >= 12:  # the twelfth run is reported while it is under way, too
             raise KeyboardInterrupt
 
     with pytest.raises(Interrupted) as interrupted:
@@ -276,9 +276,9 @@ def test_the_command(tmp_path, monkeypatch, capsys):
         *("--of", "min_gear_speed", "--seed", "3"),
     ]
     assert main(command) == 0
-    told = capsys.readouterr().out
-    assert "probability of sticking" in told
-    assert "turns smoothly" in told
+    printed = capsys.readouterr().out
+    assert "probability of sticking" in printed
+    assert "turns smoothly" in printed
     target = "teodorescu2009_low_speed_ensemble.nc"
     ds = gd.open_archive(target)
     assert ds.sizes["member"] == 16

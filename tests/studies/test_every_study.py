@@ -121,8 +121,8 @@ def test_terminal_report_and_json_give_the_same_answer(product, tmp_path, capsys
     assert main(["info", str(path)]) == 0
     assert reply.sentence in capsys.readouterr().out
     assert main(["info", str(path), "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert (told["kind"], told["answer"]) == (kind, reply.sentence)
+    printed = json.loads(capsys.readouterr().out)
+    assert (printed["kind"], printed["answer"]) == (kind, reply.sentence)
     assert main(["report", str(path), "-o", str(tmp_path / "page.html")]) == 0
     page = (tmp_path / "page.html").read_text(encoding="utf-8")
     assert f'<p class="headline">{html.escape(reply.sentence)}</p>' in page

@@ -88,8 +88,8 @@ def test_the_command(tmp_path, monkeypatch, capsys):
         *("--over", "drive.torque=4e-18,4.5e-18", "coating.sam_fraction=1,0.9,0.8"),
     ]
     assert main(command) == 0
-    told = capsys.readouterr().out
-    assert "..." in told
-    assert "turns: 6" in told
+    printed = capsys.readouterr().out
+    assert "..." in printed
+    assert "turns: 6" in printed
     assert main(["plot", "teodorescu2009_low_speed_operating_map.nc", "-o", "map.png"]) == 0
     assert (tmp_path / "map.png").exists()

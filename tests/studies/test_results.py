@@ -179,7 +179,7 @@ def test_a_run_without_samples_is_told_by_the_solver():
 
 
 def test_the_accessor_waits_for_xarray():
-    """Importing gearidae imports neither xarray nor the engine, and yet whoever imports xarray later has it."""
+    """Importing gearidae imports neither xarray nor the engine, and yet code that imports xarray later has it."""
     script = (
         "import sys, gearidae; before = set(sys.modules); import xarray as xr; "
         "heavy = {'numba', 'sksundae', 'gearidae.engine', 'gearidae.archive'} & set(sys.modules); "

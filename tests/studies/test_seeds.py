@@ -127,10 +127,10 @@ def test_one_run_is_called_one_specimen(tmp_path, capsys):
     case, out = tmp_path / "own.toml", str(tmp_path / "out.nc")
     case.write_text(gd.dump_case(GEARS), encoding="utf-8")
     assert main(["run", str(case), "-o", out]) == 0
-    told = capsys.readouterr().out
-    assert "one specimen" in told
-    assert "contact.seed=seeds" in told
-    assert "mean over many gears" not in told
+    printed = capsys.readouterr().out
+    assert "one specimen" in printed
+    assert "contact.seed=seeds" in printed
+    assert "mean over many gears" not in printed
     assert main(["check", str(case)]) == 0
     assert "one specimen" in capsys.readouterr().out
     ds = gd.open_archive(out)

@@ -123,11 +123,11 @@ def test_the_command_prints_the_brackets(brackets, tmp_path, monkeypatch, capsys
         "5",
     ]
     assert main(command) == 0
-    told = capsys.readouterr().out
+    printed = capsys.readouterr().out
     with xr.open_dataset("teodorescu2009_low_speed_threshold.nc") as kept:
         limit = float(kept.limit[-1])
     assert limit == pytest.approx(float(brackets.limit[-1]), abs=0.05)
-    assert "within 5 mesh exits" in told
-    assert f"{limit:.4g}" in told
-    assert "no run has stuck so early" in told
+    assert "within 5 mesh exits" in printed
+    assert f"{limit:.4g}" in printed
+    assert "no run has stuck so early" in printed
     assert main([*command[:-1], "0", "--overwrite"]) == 2

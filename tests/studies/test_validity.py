@@ -183,8 +183,8 @@ def test_the_attribute_reads_back(scene):
     assert json.loads(text)[0]["name"] == "expected_asperities"
     for read, row in zip(rows_from_json(text), validity_rows(scene), strict=True):
         for field in row.__slots__:
-            told, wanted = getattr(read, field), getattr(row, field)
-            assert told == wanted or (math.isnan(told) and math.isnan(wanted))
+            reread, wanted = getattr(read, field), getattr(row, field)
+            assert reread == wanted or (math.isnan(reread) and math.isnan(wanted))
 
 
 SOUND = json.loads(validity_attribute(LOW))

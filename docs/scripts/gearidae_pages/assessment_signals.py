@@ -38,7 +38,7 @@ class Condition:
     decibels : float
         Ratio of the first impact's ring (root mean square) to white noise.
     torque : float
-        Drive torque in parts of the preset's, which `assess` is not told.
+        Drive torque in parts of the preset's, which `assess` does not get.
     driver : str
         That makes the clean speed: ``auto`` or ``sksundae``.
     change : callable or None
@@ -50,9 +50,9 @@ class Condition:
     slower : int
         Divides the sampling rate.
     filtered : bool
-        Whether a low-pass filter stands before the sampling, and `assess` is told so.
+        Whether a low-pass filter stands before the sampling, and `assess` knows of it.
     calibration : float
-        Relative uncertainty of the speed that `assess` is told [1].
+        Relative uncertainty of the speed that `assess` gets [1].
     """
 
     decibels: float = 20.0

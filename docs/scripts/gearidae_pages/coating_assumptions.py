@@ -31,7 +31,7 @@ __all__ = [
 LAWS: Final = {"jkr": "JKR", "maugis": "Maugis"}
 """Names of the laws, by ``contact.asperity``."""
 FRACTIONS: Final = (1.0, 0.8, 0.6, 0.5)
-"""SAM fractions at which the characteristic frequency is told."""
+"""SAM fractions at which the characteristic frequency is given."""
 RESOLUTION: Final = 0.01
 """Width of the bracket of a sticking limit."""
 _HALF: Final = 0.5
@@ -124,7 +124,7 @@ def low_speed(
     resolution : float, optional
         Width of the bracket of a limit.
     fractions : sequence of float, optional
-        At which frequencies are told.
+        At which frequencies are given.
 
     Yields
     ------

@@ -51,7 +51,7 @@ class RunSummary(Totals):
     sticks, slips : int
         How often dry resistance, with friction in the gear's hub, took hold of the gear, and gave way.
     time_at_rest : float
-        Held at rest by all that is dry: dry resistance, friction of the gear's hub, or friction of flanks and hubs. The
+        Held at rest by dry friction: dry resistance, friction of the gear's hub, or friction of flanks and hubs. The
         engine has counted it since the start of the chain; of archives of version 0.2 it is that of stick and slip
         events of the run [s].
     time_adhering : float

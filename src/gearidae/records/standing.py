@@ -64,9 +64,7 @@ STANDING_NOW: Final = (
         comment="0 without one; NaN if the gear has never left half a pitch",
     ),
     _torque("breakaway_torque", "torque of the drive on the pinion then"),
-    _time(
-        "rest_time", "time since the start of the chain of runs for which all that is dry has held the gear"
-    ),
+    _time("rest_time", "time since the start of the chain of runs for which dry friction has held the gear"),
     _time("followed_time", "time since the start of the chain of runs to which this holds"),
 )
 """Where the gear stands at the end of a run; advances of a gear that does not stand begin at the first zero within half

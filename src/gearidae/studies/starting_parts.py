@@ -1,6 +1,6 @@
 r"""What takes the torque that starts a gear from rest: dry resistance, teeth, hubs, pin, axial loads, in closed form.
 
-With all that is dry at its limit, and the force F of the teeth,
+With all dry friction at its limit, and the force F of the teeth,
 
 .. math::
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 COLUMNS: Final = ("difference", "scale", "relative", "where")
 _LEFT_OUT: Final = {*RUN, *OF_SWEPT_RUN, *EVENTS, "residual", "residual_bound"}
-"""What tells of the effort and of the errors of a run, and not of its motion; events are compared as a sequence."""
+"""Effort and errors of a run, which say nothing of its motion; events are compared as a sequence."""
 _WHICH: Final = ("pair", "flank", "tooth", "sam_fraction")
 """What says which passage it is."""
 _EXCHANGED: Final = ("stored_change", "kinetic_change", "radius_work", "model_change")

@@ -1,4 +1,4 @@
-"""Events of all that is dry: a flank begins to rub or ends, sliding turns round, sticks and slips, gears come to rest.
+"""Events of dry friction: a flank begins to rub or ends, sliding turns round, sticks and slips, gears come to rest.
 
 Friction of flanks, hubs and the dry resistance at the gear are set-valued elements, whose directions of slip are part
 of the state. Each element that slips has its speed for a guard, and what is held the distance of its friction from the
@@ -55,7 +55,7 @@ def _is_known(m: Model, noted: Record) -> bool:
 
 @compiled(inline=True)
 def dry_guard(m: Model, t: float, y: Floats) -> float:
-    """Least guard of all that is dry; that of a gear which slips under its load alone needs no force."""
+    """Least guard of all dry friction; that of a gear which slips under its load alone needs no force."""
     if m.scene.friction.rubs == 0 and m.state.hold == FREE:
         return m.state.slip * y[W] + STILL
     return sliding_guard(m, t, y)

@@ -1,1 +1,1 @@
-"""All that is dry, friction of flanks and hubs and the dry load: limits, accelerations, gears at rest."""
+"""Dry friction, of flanks, hubs and pin, and the dry load: limits, accelerations, gears at rest."""

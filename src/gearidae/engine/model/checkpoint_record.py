@@ -177,7 +177,7 @@ _STANDING_FIELDS: Final = (
     flag("high_known", "1 if `HIGH` is the zero farthest forward since the gear last went forward"),
     Quantity("low", "position farthest back since it last went back", PITCHES),
     flag("left", "1 once the gear has left half a pitch from the start of a chain"),
-    Quantity("rest_time", "for which all that is dry has held the gear", SECONDS),
+    Quantity("rest_time", "for which dry friction has held the gear", SECONDS),
     count("stand_count", "standstills that are kept", high=MOST_STANDSTILLS),
     Quantity(
         "standstill",

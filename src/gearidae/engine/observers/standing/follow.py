@@ -105,7 +105,7 @@ def resume(m: Model, t: float, y: Floats, before: float) -> None:
 
 @compiled
 def is_at_rest(m: Model) -> bool:
-    """Whether all that is dry holds the gear."""
+    """Whether dry friction holds the gear."""
     return bool(m.state.hold == AT_REST or m.state.hold == HELD_GEAR)
 
 

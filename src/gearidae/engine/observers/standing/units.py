@@ -83,7 +83,7 @@ def _row(m: Model, standstill: Any) -> list[float]:
 
 
 def _holding(m: Model, at_rest: bool, held: float) -> Holding:
-    """What holds a gear that stands: all that is dry, if it is at rest, and adhesion, if that is not enough."""
+    """What holds a gear that stands: dry friction, if it is at rest, and adhesion, if that is not enough."""
     dry = Holding(int(m.scene.friction.holding))
     holding = dry if at_rest else Holding(0)
     if not at_rest or (held > 0.0 and not dry & ~Holding.DRY_RESISTANCE):
