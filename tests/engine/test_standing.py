@@ -187,3 +187,53 @@ def test_a_gear_that_creeps_past_half_a_pitch_stands_on_from_a_later_zero():
     table = ds.gearidae.standstills()
     assert table["verdict"].tolist() == ["sticks", "sticks"]
     assert table["begin"][1] == table["end"][0] == pytest.approx(0.2857, abs=1e-3)
+
+
+DEVICE = PAIR.replace(
+    {
+        "surface.asperity_radius": 160e-9,
+        "coating.sam_fraction": 1.0,
+        "coating.energy": 0.05,
+        "load.torque": 2e-12,
+        "load.drag": 0.0,
+        "load.viscous": 1e-14,
+        "drive.schedule": [(0.0, 0.0), (20e-3, 4e-12)],
+        "run.duration": 6e-3,
+    }
+)
+"""Under the torques of a device: the drive overcomes the dry load at 10 ms / 3."""
+
+
+def same_standstills(table, other):
+    assert table.verdict.tolist() == other.verdict.tolist()
+    assert table.held_by.tolist() == other.held_by.tolist()
+    for column, rel in (
+        ("begin", 1e-6),
+        ("end", 1e-6),
+        ("rest_time", 1e-3),
+    ):  # the last by the ringing's steps
+        assert table[column].to_numpy() == pytest.approx(other[column].to_numpy(), rel=rel, nan_ok=True)
+
+
+@pytest.mark.parametrize("cut", [2e-3, 3.5e-3, 3.9e-3, 5e-3])
+@pytest.mark.parametrize("knots", [2, 3])
+def test_a_run_that_is_cut_has_the_standstills_of_one_that_is_not(cut, knots):
+    """Also where it has begun to move and not left half a pitch; a third knot after the end is another schedule."""
+    whole = gd.simulate(DEVICE)
+    first = gd.simulate(DEVICE, t_end=cut)
+    schedule = [*DEVICE.drive.schedule, (30e-3, 4e-12)][:knots]
+    rest = gd.simulate(DEVICE.replace({"drive.schedule": schedule}), start=first, t_end=6e-3)
+    table = whole.gearidae.standstills()
+    assert table.end[0] == pytest.approx(10e-3 / 3.0, rel=1e-6)
+    same_standstills(rest.gearidae.standstills(), table)
+    assert float(rest.start_time) == pytest.approx(float(whole.start_time), rel=1e-6)
+
+
+def test_what_a_standstill_held_is_what_drove_until_its_end():
+    """A step of the torque that is not over where the gear begins to move: the plateau after it was not held."""
+    step = [(0.0, 0.0), (1e-3, 0.0), (1.01e-3, 2e-12), (2e-3, 2e-12), (2.01e-3, 0.0)]
+    table = gd.simulate(DEVICE.replace({"drive.schedule": step, "initial.gap": 28e-9})).gearidae.standstills()
+    begins = table[table.end < 1.01e-3]
+    assert len(begins) == 1
+    time = begins.end.iloc[0]
+    assert begins.held_torque.iloc[0] <= max(3.0 * 2e-12 * (time - 1e-3) / 1e-5 - 2e-12, 0.0) + 1e-18

@@ -107,8 +107,8 @@ def checkpoint_of_start(scene: Scene, start: Start) -> Floats:
     assert start.scene is not None
     assert start.words is not None
     old, old_y = _restored(start.scene, start.words, start.began)
-    if old.model.scene.follow.gear != 0:
-        settle_standing_at(old.addresses.place, float(old.model.state.time))
+    if old.model.scene.follow.gear != 0 and _torques(start.scene) != _torques(scene):
+        settle_standing_at(old.addresses.place, float(old.model.state.time), old_y)
     new = problem_from(scene, start)
     new.prepare(scene.run.rtol, scene.run.sample_count)
     new = _same_contact(old, new)
@@ -138,6 +138,11 @@ def checkpoint_of_start(scene: Scene, start: Start) -> Floats:
     rebase(m, y)
     m.state.progress.restarts = 1
     return new.checkpoint(time, y)
+
+
+def _torques(scene: Scene) -> tuple[object, object]:
+    """What drives the gears of a scene, and what loads them."""
+    return scene.drive, scene.load
 
 
 def knots_at_start(problem: Problem) -> Floats:

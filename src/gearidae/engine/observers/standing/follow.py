@@ -178,8 +178,6 @@ def note_stood(m: Model, limit: float) -> None:
         if s.zero[i].spent == 0 and s.zero[i].time < limit:
             time, way, free = stood_until(m, i, limit, m.scene.end * m.scene.time_unit)
             if time > 0.0:
-                if free == 0.0:
-                    s.zero[SPARE].excess = s.zero[SPARE].driven_time = 0.0
                 _note_standstill(m, i, time, way, free)
                 return
         i += 1
@@ -289,6 +287,15 @@ def _hardest(m: Model, t: float) -> float:
     return time
 
 
+@compiled
+def _standing_zero(m: Model, time: float, position: float) -> int:
+    """Zero from which the gear stands at an end [s] at a position; -1 if none, and a standstill before is noted."""
+    i = standing_since(m, time, position, time) if m.state.standing.zero_count > 0 else -1
+    if i < 0:
+        note_stood(m, time)
+    return i
+
+
 STANDING_NUMBERS: Final = 17
 """Numbers that `standing_at` leaves, in the order in which it writes them."""
 
@@ -311,9 +318,7 @@ def standing_at(place: int, t: float, y: Floats, out: Floats) -> None:
     m = model_at(place)
     s, time, position = m.state.standing, t * m.scene.time_unit, y[PHASE] + m.state.turns
     out[:] = 0.0
-    i = standing_since(m, time, position, time) if s.zero_count > 0 else -1
-    if i < 0:
-        note_stood(m, time)
+    i = _standing_zero(m, time, position)
     out[0] = 1.0 if i >= 0 else 0.0
     if s.zero_count > 0:
         follow_free(m, max(i, 0), t, math.inf)
@@ -333,10 +338,17 @@ def standing_at(place: int, t: float, y: Floats, out: Floats) -> None:
 
 
 @compiled
-def settle_standing_at(place: int, t: float) -> None:
-    """Follow all free gears to the end of a run, after which torques may be others."""
+def settle_standing_at(place: int, t: float, y: Floats) -> None:
+    """Follow all free gears to the end of a run, after which torques are others.
+
+    They cannot be followed to an earlier time later. A standstill that has ended by then is therefore noted now, and no
+    later one ends before.
+    """
     m = model_at(place)
-    s = m.state.standing
+    s, time, position = m.state.standing, t * m.scene.time_unit, y[PHASE] + m.state.turns
+    _standing_zero(m, time, position)
+    s.slow_count = 0
+    note_slow(m, time, abs(y[W]) * m.scene.phase_rate / m.scene.time_unit, position)
     for i in range(s.zero_count):
         s.zero[i].free_before = s.zero[i].free_farthest
         follow_free(m, i, t, math.inf)

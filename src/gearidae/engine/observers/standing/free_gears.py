@@ -28,7 +28,7 @@ from gearidae.engine.torques.schedule import straight_until
 TOLERANCE: Final = 1e-5
 """Relative error of speed and travel in a step; of the travel also this many tenths of a pitch."""
 SHORTEST: Final = 1e-8
-"""Share of the run that a step has at least: with `SCENE.free_step` the bound on the work."""
+"""Share of the time of all runs of a chain that a step has at least: with `SCENE.free_step` the bound on the work."""
 _TURN: Final = 0.25
 """Radians that the fastest torque of an angle may go through in a step."""
 _BISECTIONS: Final = 40
@@ -57,7 +57,7 @@ def _follow_piece(m: Model, i: int, t: float, stop: float, enough: float) -> flo
     if w != 0.0:
         sign = math.copysign(1.0, w)
     longest = m.scene.free_step if m.scene.free_step > 0.0 else stop - t
-    least = max(SHORTEST * (m.scene.end - m.scene.start), 1e-14 * stop)
+    least = max(SHORTEST * m.scene.end, 1e-14 * stop)
     h = 1e-3 * (stop - t)
     while t < stop and z.free_farthest < enough:
         if w == 0.0:

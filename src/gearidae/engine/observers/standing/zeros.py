@@ -199,29 +199,33 @@ def stood_until(m: Model, i: int, limit: float, length: float) -> tuple[float, f
     Returns
     -------
     time, advance, free_advance : float
-        [s], [pb], [pb].
+        [s], [pb], [pb]. `SPARE` is the zero with its free gears at that time.
     """
-    s = m.state.standing
+    s, tau = m.state.standing, m.scene.time_unit
     copy_zero(m, SPARE, i)
     z = s.zero[SPARE]
-    last = (0.0, 0.0, 0.0)
-    before = -1.0
+    end, advance, before = 0.0, 0.0, -1.0
     for k in range(s.slow_count):
         point = s.slow[k]
         if point.time < z.free_time or point.time > limit:
             continue
-        follow_free(m, SPARE, point.time / m.scene.time_unit, math.inf)
+        follow_free(m, SPARE, point.time / tau, math.inf)
         way, free = distance(z, point.position), z.free_farthest
         margin = 0.5 * free - way
         if _stands(way, free, point.time - z.time, length):
-            last, before = (point.time, way, free), margin
+            end, advance, before = point.time, way, margin
         elif before >= 0.0:
             share = before / (before - margin)
-            last = (last[0] + share * (point.time - last[0]), last[1], last[2])
+            end, advance = end + share * (point.time - end), advance + share * (way - advance)
             before = -1.0
-    if last[0] == 0.0 and z.onset > 0.0 and z.onset <= limit and z.onset - z.time > SHARE * length:
-        last = (z.onset, distance(z, z.position), 0.0)
-    return last
+    if end > 0.0:
+        copy_zero(m, SPARE, i)
+        follow_free(m, SPARE, end / tau, math.inf)
+        return end, advance, z.free_farthest
+    z.excess = z.driven_time = 0.0
+    if z.onset > 0.0 and z.onset <= limit and z.onset - z.time > SHARE * length:
+        return z.onset, distance(z, z.position), 0.0
+    return 0.0, 0.0, 0.0
 
 
 @compiled
