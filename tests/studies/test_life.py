@@ -249,6 +249,9 @@ def test_scenes_are_checked():
         gd.studies.life(gd.preset("start_up"), LAW)
     with pytest.raises(gd.SceneError, match="loss law"):
         gd.studies.life(LOW, "contacts")
+    held = {"drive.torque": 1e-18, "load.torque": 1e-17, "initial.gear_speed": 0.0}
+    with pytest.raises(gd.SceneError, match=r"drive.torque .* must turn the gear"):
+        gd.studies.life(LOW.replace(held), LAW, **SHORT)
 
 
 def test_signals_along_a_life_follow_its_coverage(short):

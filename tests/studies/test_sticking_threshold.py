@@ -111,6 +111,32 @@ def test_scenes_without_a_threshold_are_refused():
         study(LOW.replace({"drive.schedule": [[0.0, 0.0], [0.1, 1e-18]]}), between=BETWEEN)
 
 
+HEAVY = LOW.replace(
+    {
+        "coating.sam_fraction": 1.0,
+        "load.torque": 3e-18,
+        "load.viscous": 1e-17,
+        "drive.torque": 5e-18,
+        "initial.gear_speed": 0.0,
+    }
+)
+"""A dry load, which the drive overcomes above a quarter of it, 7.5e-19 N m; the speed is that of the excess over c."""
+
+
+def test_gears_that_are_only_slow_do_not_count_as_sticking(caplog):
+    """Close above the dry load a gear needs more time than it gets: it does not narrow the bracket."""
+    between, width = (7e-19, 1e-18), 5e-20
+    ds = gd.studies.sticking_threshold(HEAVY, "drive.torque", between, exits=2, width=width)
+    assert (ds.sticks <= 7.5e-19).all()
+    assert (ds.passes > 7.5e-19).all()
+    slow = ds.value.values[(ds.exits_passed.values < 2) & (ds.value.values > 7.5e-19)]
+    assert len(slow) == caplog.text.count("one run says nothing of more mesh exits: at ") > 0
+    assert (float(ds.passes[0]) <= slow).any()  # it has passed one exit, and counts for it
+    assert "of 2 mesh exits and does not stick" in caplog.text
+    with pytest.raises(gd.SceneError, match=r"between .* the gear is slow"):
+        gd.studies.sticking_threshold(HEAVY, "drive.torque", (slow[0], 1e-18), exits=2, width=width)
+
+
 def test_the_command_prints_the_brackets(brackets, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(threshold, "_WIDTH", 0.25)

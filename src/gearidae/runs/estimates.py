@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearidae.arrays import Floats
+from gearidae.errors import SceneError
 from gearidae.mesh.pair_contact import PairContact, pair_contact
 from gearidae.runs.rubbing import hub_constants, transmitted_share
 from gearidae.scene import GearScene, RollerScene, Scene, require_gears
@@ -97,6 +98,23 @@ def steady_speed(scene: Scene) -> float:
     scene = require_gears(scene)
     drive = scene.drive
     return balanced_speed(scene, float(_over_run(scene, drive.torque, drive.schedule).mean()))
+
+
+def waiting_speed(scene: GearScene) -> float:
+    """Speed [rad/s] by which a study counts how long mesh exits take: `steady_speed`, or the initial one without any.
+
+    Raises
+    ------
+    SceneError
+        If neither turns the gear on.
+    """
+    speed = steady_speed(scene)
+    if not 0.0 < speed < math.inf:
+        speed = scene.initial.gear_speed
+    if speed <= 0.0:
+        allowed = "must turn the gear, or initial.gear_speed be positive"
+        raise SceneError("drive.torque", scene.drive.torque, allowed)
+    return speed
 
 
 def balanced_speed(scene: GearScene, torque: float) -> float:

@@ -17,7 +17,7 @@ import numpy as np
 from gearidae import engine
 from gearidae.arrays import Floats
 from gearidae.records import ExposureRows, Extremes
-from gearidae.runs.estimates import steady_speed
+from gearidae.runs.estimates import waiting_speed
 from gearidae.runs.running import solve_to_end, unfinished, unsolved
 from gearidae.scene import MATERIAL_NAMES
 from gearidae.scene.friction import has_flank_friction
@@ -59,10 +59,7 @@ class Cycles:
 
 def window_scene(scene: GearScene, cycles: Cycles, places: int) -> GearScene:
     """Return the scene of a window, with the time of all of it: it keeps the exposures."""
-    speed = steady_speed(scene)
-    if not 0.0 < speed < math.inf:
-        speed = scene.initial.gear_speed
-    duration = _PATIENCE * cycles.total * 2.0 * math.pi / (scene.gears.gear_teeth * speed)
+    duration = _PATIENCE * cycles.total * 2.0 * math.pi / (scene.gears.gear_teeth * waiting_speed(scene))
     return scene.replace(
         {
             "run.exposures": places,

@@ -12,11 +12,11 @@ from gearidae.runs.running import solve_to_end, unfinished, unsolved
 from gearidae.scene.keys import scene_value
 
 if TYPE_CHECKING:
-    from gearidae.records import Solution
+    from gearidae.records import Extremes, Solution
     from gearidae.scene import Scene
 
 _LONGEST = 8.0
-"""A slow gear gets up to this many times the time; what it has not passed then counts as not passed."""
+"""A slow gear gets up to this many times the time; one that still moves then has neither stuck nor passed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +33,8 @@ class ThresholdRun:
         When it stuck [s]; NaN if it has not.
     window : float
         Simulated time [s].
+    slow : bool
+        Whether the gear still moved when the time was over, and had not passed all exits: of these it says nothing.
     failure : SolverError or None
         Why the run could not be finished: it says nothing of the gear then.
     """
@@ -41,19 +43,26 @@ class ThresholdRun:
     passed: int
     stick_time: float
     window: float
+    slow: bool = False
     failure: SolverError | None = None
 
     @classmethod
-    def of(cls, value: float, solution: Solution) -> ThresholdRun:
-        """Read a solution."""
+    def of(cls, value: float, solution: Solution, exits: int) -> ThresholdRun:
+        """Read the solution of a run until so many mesh exits."""
         extremes = solution.extremes
         if extremes is None or solution.status != "finished":
             failure = unfinished(solution, f"the run at {value:g}")
-            return cls(value, 0, math.nan, solution.reached or 0.0, failure)
+            return cls(value, 0, math.nan, solution.reached or 0.0, failure=failure)
         if not has_stuck(extremes):
-            return cls(value, extremes.mesh_exits, math.nan, solution.reached or 0.0)
+            slow = _is_slow(extremes, exits)
+            return cls(value, extremes.mesh_exits, math.nan, solution.reached or 0.0, slow)
         time = extremes.back_time if math.isnan(extremes.stick_time) else extremes.stick_time
         return cls(value, extremes.stick_exits, time, solution.reached or 0.0)
+
+    def slow_in_words(self, exits: int) -> str:
+        """Say what a slow gear has done of so many mesh exits."""
+        passes = f"in {self.window:.3g} s it passes {self.passed} of {exits} mesh exits and does not stick"
+        return f"at {self.value:g} the gear is slow: {passes}"
 
 
 def run_until(scene: Scene, exits: int, backend: str) -> tuple[Solution, str]:
@@ -72,11 +81,16 @@ def run_until(scene: Scene, exits: int, backend: str) -> tuple[Solution, str]:
     while True:
         solution = solve_to_end(scene.replace({"run.duration": duration}), backend)
         extremes = solution.extremes
-        moves = extremes is not None and math.isnan(extremes.stick_time) and math.isnan(extremes.back_time)
-        slow = not scheduled and moves and extremes is not None and extremes.mesh_exits < exits
-        if not slow or solution.status != "finished" or duration >= longest:
+        slow = extremes is not None and _is_slow(extremes, exits)
+        if scheduled or not slow or solution.status != "finished" or duration >= longest:
             return replace(solution, events=unsolved("", "").events), ""
         duration *= 2.0
+
+
+def _is_slow(extremes: Extremes, exits: int) -> bool:
+    """Whether a gear neither stands nor has gone back, and has not passed so many exits."""
+    moves = math.isnan(extremes.stick_time) and math.isnan(extremes.back_time)
+    return moves and extremes.mesh_exits < exits
 
 
 def value_of(scene: Scene, key: str) -> float:

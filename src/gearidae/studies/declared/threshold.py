@@ -76,10 +76,11 @@ def sticking_threshold(
     -------
     Dataset
         Along ``exits`` (1, 2, 5, 10 ... up to `exits`), in the key's unit: ``limit``, the middle of the bracket whose
-        ends are ``sticks``, where a run sticks within so many exits, and ``passes``, where it passes them, as at
-        all values tried beyond. NaN where no run has stuck so early. Along ``run`` all runs: ``value``,
+        ends are ``sticks``, where a run sticks or stops within so many exits, and ``passes``, where it passes them, as
+        at all values tried beyond. NaN where no run has stuck so early. Along ``run`` all runs: ``value``,
         ``exits_passed`` until it stuck or its time was over, ``stick_time`` (NaN if it has not stuck) and
-        ``simulated_time``. Runs that could not be finished are named in the log and left out; ``left_out`` counts them.
+        ``simulated_time``. A gear that still moves when the time is over counts for the exits that it has passed alone.
+        Runs that could not be finished are left out; ``left_out`` counts them. The log names both.
 
     Raises
     ------
@@ -143,18 +144,20 @@ class _Pool:
         scenes = [self.scene.replace({self.over: value}) for value in todo]
         solved = self.compute(run_until, scenes, self.exits)
         for value, (solution, _) in zip(todo, solved, strict=True):
-            run = ThresholdRun.of(value, solution)
-            if run.failure is None:
-                _refuse_short(self.scene, run, self.exits)
-            else:
+            run = ThresholdRun.of(value, solution, self.exits)
+            _refuse_short(self.scene, run, self.exits)
+            if run.failure is not None:
                 log.warning("one run is left out: %s", run.failure)
+            elif run.slow:
+                log.warning("one run says nothing of more mesh exits: %s", run.slow_in_words(self.exits))
             self.runs.append(run)
         return bool(todo)
 
 
 def _refuse_short(scene: Scene, run: ThresholdRun, exits: int) -> None:
     """Refuse a schedule in whose time a gear neither sticks nor passes all exits: one run then gives no answer."""
-    if math.isnan(run.stick_time) and run.passed < exits and is_scheduled(scene.to_dict()):
+    unanswered = run.failure is None and math.isnan(run.stick_time) and run.passed < exits
+    if unanswered and is_scheduled(scene.to_dict()):
         allowed = (
             f"must be at most {run.passed}, or run.duration longer: at {run.value:g} the gear does not stick in the "
             f"{run.window:g} s of its schedule and passes no more"
@@ -183,7 +186,7 @@ def _followed(runs: Sequence[ThresholdRun]) -> list[ThresholdRun]:
 
 def _bracket(runs: Sequence[ThresholdRun], exits: int) -> tuple[float, float]:
     """Value nearest to the passing end at which a run sticks within so many exits, and the next beyond it."""
-    runs = _followed(runs)
+    runs = [run for run in _followed(runs) if run.passed >= exits or not run.slow]
     first, last = (pick(runs, key=lambda run: run.value) for pick in (min, max))
     passed = {run.value: run.passed >= exits for run in runs}
     return bracket(passed, falling=first.passed > last.passed)
@@ -195,6 +198,9 @@ def _check_ends(pool: _Pool, ends: tuple[float, float]) -> None:
     for run in (first, second):
         if run.failure is not None:
             raise run.failure
+        if run.slow:
+            allowed = f"must be values at which it sticks or passes: {run.slow_in_words(pool.exits)}"
+            raise SceneError("between", list(ends), allowed)
     if (first.passed < pool.exits) == (second.passed < pool.exits):
         what = "sticks" if first.passed < pool.exits else "passes them"
         passed = f"{first.passed} and {second.passed} mesh exits"
@@ -254,15 +260,9 @@ def _check(exits: int, width: float) -> None:
 
 def _window(scene: GearScene, exits: int) -> float:
     """Simulated time that a run gets [s]."""
-    from gearidae.runs.estimates import steady_speed
+    from gearidae.runs.estimates import waiting_speed
 
-    speed = steady_speed(scene)
-    if not 0.0 < speed < math.inf:
-        speed = scene.initial.gear_speed
-    if speed <= 0.0:
-        allowed = "must turn the gear, or initial.gear_speed be positive"
-        raise SceneError("drive.torque", scene.drive.torque, allowed)
-    return _PATIENCE * (exits + 1) * 2.0 * math.pi / (scene.gears.gear_teeth * speed)
+    return _PATIENCE * (exits + 1) * 2.0 * math.pi / (scene.gears.gear_teeth * waiting_speed(scene))
 
 
 def _call(
