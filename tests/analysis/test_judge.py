@@ -65,6 +65,20 @@ def test_standing_is_judged_alike_for_every_torque(extremes, verdict, scheduled)
 
 
 @pytest.mark.parametrize(
+    ("fall", "verdict"),
+    [
+        (0.0, "running up"),  # started in the last twentieth
+        (0.25, "running up"),
+        (0.26, "irregular"),  # it had turned before
+        (math.nan, "irregular"),
+    ],
+)
+def test_a_scheduled_start_in_the_last_twentieth_is_a_running_up(fall, verdict):
+    late = Extremes(MOVES, last_min_gear_speed=0.0, speed_fall=fall, speed_rise=4.0)
+    assert gear_verdict(late, "finished", scheduled=True) == verdict
+
+
+@pytest.mark.parametrize(
     ("advance", "free", "lasts", "expected"),
     [
         (0.3, 0.61, 0.002, True),

@@ -66,7 +66,7 @@ def gear_verdict(extremes: Extremes | None, status: str, *, scheduled: bool) -> 
     if status != "finished":
         return "unfinished"
     if scheduled:
-        return "runs" if extremes.last_min_gear_speed > 0.0 else "irregular"
+        return _scheduled_turning(extremes)
     return _turning(extremes)
 
 
@@ -127,6 +127,14 @@ def is_scheduled(scene: Mapping[str, Any]) -> bool:
     drive, load = scene.get("drive") or {}, scene.get("load") or {}
     held = drive.get("speed")
     return bool(drive.get("schedule") or load.get("schedule") or isinstance(held, (dict, list)))
+
+
+def _scheduled_turning(extremes: Extremes) -> str:
+    """The same where a torque or the held speed follows a schedule."""
+    if extremes.last_min_gear_speed > 0.0:
+        return "runs"
+    only_rose = extremes.speed_fall <= IRREGULAR_ABOVE * extremes.settled_gear_speed
+    return "running up" if only_rose else "irregular"  # the first has started in the last twentieth
 
 
 def _turning(extremes: Extremes) -> str:
