@@ -36,6 +36,12 @@ def test_nothing_is_said_of_the_shipped_cases(case):
         (LOW, {"surface.asperity_density": 1e11}, "asperities stand 3.16 um apart"),
         (
             LOW,
+            {"gears.gear_axial_load": 8e-8, "gears.gear_dimple_radius": 8e-6},
+            "gears.gear_axial_load = 80 nN has no effect without gears.hub_friction",
+        ),
+        (LOW, {"mesh.film_gap": 30e-9}, "mesh.film_gap = 30 nm has no effect without mesh.film_damping"),
+        (
+            LOW,
             {"load.harmonic": {"amplitude": 1e-18, "frequency": 1e3}},
             "load.harmonic swings by 1 aN m about a dry resistance of 0 N m: it is cut off",
         ),

@@ -29,7 +29,7 @@ def doubts(scene: Scene) -> list[str]:
     list of str
         Sentences, each with the key and the numbers; empty for most scenes.
     """
-    return [*_sizes(scene), *_resistance(scene), *_bodies(scene), *_path_force(scene)]
+    return [*_sizes(scene), *_resistance(scene), *_bodies(scene), *_path_force(scene), *_idle(scene)]
 
 
 def log_doubts(scene: Scene) -> None:
@@ -104,3 +104,20 @@ def _resistance(scene: Scene) -> list[str]:
         return []
     about = f"{with_prefix(swing, 'N m')} about a dry resistance of {with_prefix(least, 'N m')}"
     return [f"load.harmonic swings by {about}: it is cut off where the sum falls below 0"]
+
+
+def _idle(scene: Scene) -> list[str]:
+    """Name loads and films that do nothing without their coefficient."""
+    if scene.gears is None or scene.mesh is None:
+        return []
+    lines = []
+    if scene.gears.hub_friction == 0.0:
+        for key in ("pinion_axial_load", "gear_axial_load", "pinion_hub_adhesion", "gear_hub_adhesion"):
+            load = getattr(scene.gears, key)
+            if load > 0.0:
+                words = "has no effect without gears.hub_friction"
+                lines.append(f"gears.{key} = {with_prefix(load, 'N')} {words}")
+    if scene.mesh.film_gap > 0.0 and scene.mesh.film_damping == 0.0:
+        words = "has no effect without mesh.film_damping"
+        lines.append(f"mesh.film_gap = {with_prefix(scene.mesh.film_gap, 'm')} {words}")
+    return lines

@@ -125,7 +125,7 @@ def _measured(scene: GearScene, turns: Turns, backend: str) -> tuple[Solution, s
         before, rate, drift = after, turned / took, _drift(blocks)
         if drift <= turns.tolerance or len(blocks) == _MOST_BLOCKS:
             return after, json.dumps({"sliding": blocks[-1].tolist(), "rate": rate, "drift": drift})
-    return before, f"{FAILS}the gear does not turn on at {before.reached:g} s in {scene.name}"
+    return before, f"{FAILS}the gear does not turn on at {before.reached:g} s"
 
 
 def _late_rate(settled: Solution, scene: GearScene) -> float:
