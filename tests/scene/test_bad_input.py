@@ -187,6 +187,7 @@ def test_names_the_entry_within_lists_and_tables(gears: Scene, key: str, value: 
     ("key", "meant"),
     [
         ("coating.sam_frction", "coating.sam_fraction"),
+        ("coating.sam", "coating.sam_fraction"),
         ("sam_fraction", "coating.sam_fraction"),
         ("gear.pinion_teeth", "gears.pinion_teeth"),
         ("coatng", "coating"),
