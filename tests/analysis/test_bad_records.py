@@ -222,3 +222,9 @@ def test_no_clean_record_has_a_lone_sample(speeds):
     for speed in speeds.values():
         for rate in (100e3, 50e3, 25e3, 10e3):
             assert lone_samples(signals(record(speed, rate), gear_teeth=76).signals[0]) == []
+
+
+def test_noise_of_a_standing_gear_is_no_spike(maps):
+    """Once 472 of its samples were named as spikes."""
+    noise = np.random.default_rng(1).normal(0.0, 1e-3, round(0.3 * RATE) + 1)
+    assert assess(record(noise), maps["one torque"]).verdict == "no impacts"

@@ -253,3 +253,8 @@ def test_variables_of_a_netcdf_file_are_chosen(tmp_path):
         read_signal(tmp_path / "record.nc")
     with pytest.raises(SceneError, match="delimiter = ;: is for text files; this is a netCDF file"):
         read_signal(tmp_path / "record.nc", delimiter=";")
+
+
+def test_headings_without_rows_are_a_record_that_is_too_short(file):
+    with pytest.raises(SceneError, match=r"\(0 samples\): a record needs 16 samples or more"):
+        read_signal(file("time [s],gear_speed [rad/s]\n"))

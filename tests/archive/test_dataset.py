@@ -261,3 +261,12 @@ def test_events_of_other_runs_stay_out_of_a_selection(make_solution):
     assert (run.event_kind == EventKind.ONSET).sum() == 4
     assert run.sizes["passage"] == 4
     assert (run.passage_sam_fraction == 0.5).all()
+
+
+def test_rows_that_xarray_has_repeated_for_each_run_are_refused_by_name(make_solution):
+    fractions = [1.0, 0.5]
+    scenes = [LOW.replace({"coating.sam_fraction": fraction}) for fraction in fractions]
+    solutions = [make_solution(scene, impacts=2) for scene in scenes]
+    ds = combine(LOW, {"coating.sam_fraction": fractions}, scenes, solutions)
+    with pytest.raises(gd.SceneError, match=r"event_sam_fraction .*must lie along event alone; where\(\)"):
+        list(runs(ds.where(ds.sam_fraction > 0.4, drop=True)))

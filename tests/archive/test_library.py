@@ -248,3 +248,25 @@ def test_what_compression_shrinks_most_is_read(tmp_path):
         variable[:] = np.zeros(20_000_000)
     assert path.stat().st_size < 170_000
     assert loaded(path).rest.size == 20_000_000
+
+
+@pytest.mark.parametrize("how", ["simulate", "save"])
+def test_an_archive_is_read_again_while_it_is_open(how, tmp_path):
+    """netCDF's library ends the program where such a file holds a single text of varying length."""
+    scene = gd.preset("teodorescu2009_low_speed").replace({"run.duration": "1 ms", "run.samples": 11})
+    path = tmp_path / "run.nc"
+    run = gd.simulate(scene, archive=path if how == "simulate" else None)
+    if how == "save":
+        save(run, path)
+    program = (
+        "import sys, xarray\n"
+        "kept = xarray.open_dataset(sys.argv[1])\n"
+        "for _ in range(3):\n"
+        "    with xarray.open_dataset(sys.argv[1], cache=False) as again:\n"
+        "        again.load()\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program, path], capture_output=True, text=True, timeout=120, check=False
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert gd.open(path).identical(run)

@@ -141,3 +141,11 @@ def test_check_estimates_what_friction_takes(capfd):
     assert "unknown" in next(line for line in lines if "lost to flank friction" in line)
     assert main(["check", "teodorescu2009"]) == 0
     assert "friction" not in capfd.readouterr().out
+
+
+def test_swept_values_carry_their_unit(capfd):
+    scene = gd.preset("teodorescu2009_low_speed").replace({"run.duration": "1 ms", "run.samples": 11})
+    show_outcomes(gd.sweep(scene, {"mesh.backlash": ["0.2 um", "0.3 um"], "coating.sam_fraction": [1.0]}))
+    shown = words(capfd)
+    assert " 200 nm 1 turned" in shown
+    assert " 300 nm 1 turned" in shown

@@ -154,3 +154,9 @@ def test_mistyped_words_are_answered_by_the_right_one(line, meant, tmp_path, cap
     (tmp_path / "typo.toml").write_text(case.replace("sam_fraction", "sam_fracton"))
     assert main(shlex.split(line)) == 2
     assert meant in capfd.readouterr().err
+
+
+def test_a_case_without_its_ending_is_asked_for(folder, capfd):
+    (folder / "pair.toml").write_text("")
+    assert main(["check", "pair"]) == 2
+    assert "is no file, no preset and no shipped case; did you mean pair.toml?" in capfd.readouterr().err

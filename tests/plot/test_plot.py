@@ -72,7 +72,7 @@ def legend_of(ax):
 def test_a_picture_of_many_runs_says_how_many_it_shows(sweep):
     many = sweep_of(LOW, np.linspace(1.0, 0.45, 12).tolist())
     assert gd.plot.gear_speed(many).get_legend().get_title().get_text() == "7 of 12 runs"
-    assert ", 7 of 12 runs:" in gd.plot.contact_torque(many).get_title(loc="left")
+    assert ", 7 of 12 runs" in gd.plot.contact_torque(many).get_title(loc="left")
     assert gd.plot.gear_speed(sweep).get_legend().get_title().get_text() == ""
 
 
@@ -188,6 +188,18 @@ def test_torque_strips_do_not_overlap(sweep):
     step = -np.diff(ax.get_yticks())[0]
     settled = sweep.gear_contact_torque.values[:, 50:] * 1e18
     assert np.ptp(settled) < step
+
+
+def test_the_title_of_torque_strips_is_whole_and_names_what_is_cut_off():
+    many = gd.plot.contact_torque(sweep_of(LOW, [1.0, 0.9, 0.8, 0.75, 0.7, 0.6, 0.5, 0.45]))
+    many.figure.canvas.draw()
+    title = many._left_title
+    assert title.get_window_extent().x1 <= many.figure.bbox.x1
+    assert "7 of 8 runs" in title.get_text()
+    ds = sweep_of(LOW, [1.0, 0.5])
+    assert "cut off" not in gd.plot.contact_torque(ds)._left_title.get_text()
+    ds["gear_contact_torque"][0, 1] = 10.0 * float(abs(ds.gear_contact_torque).max())
+    assert "start-up cut off" in gd.plot.contact_torque(ds)._left_title.get_text()
 
 
 def test_runs_cut_short_are_drawn_to_their_end():

@@ -104,9 +104,20 @@ def test_padding_adds_points_and_nothing_else(low):
 
 
 def test_impact_response_is_named_with_its_frequency(low):
-    labels = [text.get_text() for text in gd.plot.impact_spectrum(low).texts]
-    expected = gd.analysis.characteristic_frequency(low).values
-    assert labels == [f"{value:.0f} Hz" for value in expected]
+    expected = [f"{value:.0f} Hz" for value in gd.analysis.characteristic_frequency(low).values]
+    ax = gd.plot.impact_spectrum(low)
+    assert [text.get_text().partition(": ")[2] for text in ax.get_legend().get_texts()] == expected
+    assert list(ax.texts) == []  # beside peaks that are near to each other they would overlap
+    (label,) = gd.plot.impact_spectrum(low.isel(sam_fraction=0)).texts
+    assert label.get_text() == expected[0]
+    assert ax.get_xlim()[1] <= 0.5 / float(low.time[1] - low.time[0]) * (1 + 1e-9)
+
+
+def test_of_a_sweep_the_only_run_that_rings_is_named(low):
+    still = low.copy(deep=True)
+    still["gear_speed"][1] = 1.5
+    shown = gd.plot.impact_spectrum(still)
+    assert [text.get_text() for text in shown.texts] == ["SAM 100 %: 1274 Hz"]
 
 
 def test_spectrogram_shows_one_run_up_to_where_it_rings(low):

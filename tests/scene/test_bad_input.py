@@ -79,7 +79,8 @@ WRONG = [
     ("mesh.tip_relief_radius", "90 mm", "tooth pairs would be in touch at a time"),
     # whole numbers
     ("gears.pinion_teeth", 19.5, "must be a whole number"),
-    ("gears.pinion_teeth", "19", "must be a whole number"),
+    ("gears.pinion_teeth", "19", "must be a whole number in 3..10000, without quotes"),
+    ("run.balance", "true", "must be true or false, without quotes"),
     ("gears.pinion_teeth", True, "must be a whole number"),
     ("gears.pinion_teeth", NAN, "must be a whole number"),
     ("gears.pinion_teeth", 2, "must be a whole number in 3..10000"),
@@ -186,6 +187,7 @@ def test_names_the_entry_within_lists_and_tables(gears: Scene, key: str, value: 
     ("key", "meant"),
     [
         ("coating.sam_frction", "coating.sam_fraction"),
+        ("coating.sam", "coating.sam_fraction"),
         ("sam_fraction", "coating.sam_fraction"),
         ("gear.pinion_teeth", "gears.pinion_teeth"),
         ("coatng", "coating"),

@@ -248,6 +248,9 @@ def test_pictures(ensemble, stuck):
         gd.studies.sticking_probability(stuck, "coating.sam_fraction", bins=5).probability.values.tolist()
     )
     ax.figure.canvas.draw()
+    one = gd.studies.sticking_probability(stuck, "coating.sam_fraction", bins=1)
+    (bar,) = gd.plot.sticking_probability(stuck, bins=1).collections
+    assert bar.get_segments()[0][:, 1].tolist() == [one.low.item(), one.high.item()]
     with pytest.raises(gd.SceneError, match="of=figure"):
         gd.plot.sobol_indices(stuck)
 

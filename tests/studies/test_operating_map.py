@@ -62,6 +62,7 @@ def test_the_picture_has_a_cell_for_each_run(chart):
     words = [text.get_text() for text in ax.get_legend().get_texts()]
     assert words == ["turns", "crosses the backlash", "sticks"]
     assert ax.get_xlabel() == "SAM (%)"
+    assert ax.get_xlim()[1] <= 100.0  # a cell reaches beyond its value, a share does not
     stuck = (chart.outcome == Outcome.STICKS) & (chart.flank_changes > 0)
     assert len(ax.get_lines()[0].get_xdata()) == int(stuck.sum()) > 0
     ax.figure.canvas.draw()

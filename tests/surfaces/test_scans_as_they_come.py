@@ -179,3 +179,14 @@ def test_two_products_of_one_name_are_refused(heights, products, tmp_path, monke
         assert main([*asked, "--overwrite"]) == 2
         assert "named for two products" in capsys.readouterr().err
     assert [entry.name for entry in tmp_path.iterdir()] == ["scan.npy"]
+
+
+def test_missing_rows_of_a_scan_show_in_the_distance_of_the_points(heights):
+    def remarks(rows, size):
+        return [
+            remark for remark in gd.surface_from(heights[:rows], size, "50 nm").remarks if "apart" in remark
+        ]
+
+    assert remarks(128, "1 um") == remarks(80, "1 um") == remarks(80, ("0.625 um", "1 um")) == []
+    (remark,) = remarks(80, ("1 um", "1 um"))
+    assert remark.startswith("Rows are 12.5 nm apart, points along them 7.81 nm: if rows are missing")

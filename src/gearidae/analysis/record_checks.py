@@ -49,9 +49,10 @@ _OTHER_SPEED = 2.0
 another torque."""
 _SURE = 0.005
 """Relative standard uncertainty of that difference at least."""
-_LONE, _AGREEING, _MOST_ALONE, _NEIGHBOURS = 0.4, 0.2, 2, 9
+_LONE, _ABOVE_NOISE, _AGREEING, _MOST_ALONE, _NEIGHBOURS = 0.4, 6.0, 0.2, 2, 9
 """Up to two samples are alone if they are off the median of nine by this part of the usual speed, and those beside them
-by less than a fifth of that: a missed pulse halves the speed, ringing goes on for many samples."""
+by less than a fifth of that: a missed pulse halves the speed, ringing goes on for many samples. Of a gear that stands,
+noise is all there is of a speed."""
 _FADED = 0.5
 """A ring falls below this part of its amplitude before the next impact; in all runs of the preset, to a hundredth."""
 
@@ -87,9 +88,8 @@ def lone_samples(signal: Signal) -> list[int]:
     """Find the first of one or two samples that are far off between others that agree: spikes and missed pulses."""
     usual = scipy.ndimage.median_filter(signal.values, _NEIGHBOURS, mode="nearest")
     off = np.abs(signal.values - usual)
-    edges = np.flatnonzero(
-        np.diff(off > _LONE * np.abs(np.median(signal.values)), prepend=False, append=False)
-    )
+    least = max(_LONE * abs(float(np.median(signal.values))), _ABOVE_NOISE * _noise(signal.values))
+    edges = np.flatnonzero(np.diff(off > least, prepend=False, append=False))
     return [
         int(start)
         for start, end in zip(edges[::2], edges[1::2], strict=True)
@@ -151,8 +151,12 @@ def _smallest_speed(signal: Signal, model: MapModel, usual: float) -> tuple[floa
     count = max(1, min(round(_SMOOTH * pitch / (usual * signal.interval)), len(signal.values)))
     slow = scipy.ndimage.uniform_filter1d(signal.values, count, mode="nearest")
     slow = slow[int((slow >= 0.5 * usual).argmax()) :]
-    noise = 1.48 * float(np.median(np.abs(np.diff(signal.values)))) / math.sqrt(2.0 * count)
-    return float(slow.min()), noise
+    return float(slow.min()), _noise(signal.values) / math.sqrt(count)
+
+
+def _noise(values: Floats) -> float:
+    """Standard deviation of white noise in a record [its unit], from the median difference of neighbours."""
+    return 1.48 * float(np.median(np.abs(np.diff(values)))) / math.sqrt(2.0)
 
 
 def quantum(values: Floats) -> float:

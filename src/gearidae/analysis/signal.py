@@ -15,7 +15,8 @@ from gearidae.archive.variables import SAMPLES
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.records import EventKind, Flank
-from gearidae.scene.carried import cf_unit, numbers_of
+from gearidae.scene.carried import numbers_of
+from gearidae.scene.units import cf_unit
 
 FEWEST_SAMPLES = 16
 """A record shorter than this holds nothing to analyse."""

@@ -43,11 +43,14 @@ def define(template: xr.Dataset, path: Path, sizes: Mapping[str, int], *, in_pla
     """
     with tempfile.TemporaryDirectory() as folder:
         sample = Path(folder) / "template.nc"
-        template.drop_encoding().to_netcdf(
-            sample, engine="netcdf4", encoding={name: {"_FillValue": None} for name in template.coords}
-        )
+        encoding: dict[Any, dict[str, Any]] = {name: {"_FillValue": None} for name in template.coords}
+        for name, values in template.variables.items():
+            encoding[name] = encoding.get(name, {}) | text_storage(values)
+        template.drop_encoding().to_netcdf(sample, engine="netcdf4", encoding=encoding)
         form: Form = "NETCDF3_64BIT_DATA" if in_place else "NETCDF4"
         with opened(sample) as old, opened(path, "x", form) as new:
+            old.set_auto_chartostring(False)
+            new.set_auto_chartostring(False)
             lengths = {name: len(dimension) for name, dimension in old.dimensions.items()} | dict(sizes)
             new.setncatts({_ROOM: " " * _HEADER} if in_place else {})
             for name, size in lengths.items():
@@ -71,12 +74,20 @@ def define(template: xr.Dataset, path: Path, sizes: Mapping[str, int], *, in_pla
             new.setncatts({name: old.getncattr(name) for name in old.ncattrs()})
 
 
+def text_storage(variable: xr.Variable) -> dict[str, Any]:
+    """How to store a text: a single one as characters, others as the library does.
+
+    netCDF's library ends the program if a single text of varying length is read twice while the file is open elsewhere.
+    """
+    return {"dtype": "S1"} if variable.dtype.kind in "OU" and not variable.dims else {}
+
+
 def chunked(name: str, dtype: np.dtype[Any], shape: tuple[int, ...], nbytes: int) -> dict[str, Any]:
     """How to store a variable: in chunks with a checksum each (Fletcher-32), large ones compressed where it pays.
 
     Counts and flags shrink to a hundredth at half the speed of plain writing; samples of motion, whose last
     digits are noise, to two thirds at a twentieth, so they are left as they are. HDF5 has no checksum for single
-    numbers and for texts of varying length, which are stored plainly.
+    numbers and for texts, which are stored plainly.
     """
     if dtype.kind not in "fi" or not nbytes or not shape:
         return {}

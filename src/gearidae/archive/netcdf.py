@@ -20,7 +20,7 @@ from xarray.core.indexing import ExplicitIndexer, LazilyIndexedArray
 
 from gearidae.archive.attributes import readable_scene, wrong_attribute
 from gearidae.archive.commits import RECORDS, Commit, check_bytes
-from gearidae.archive.definition import CHUNK, chunked
+from gearidae.archive.definition import CHUNK, chunked, text_storage
 from gearidae.archive.disk import disk_errors
 from gearidae.archive.keep import kept_in
 from gearidae.archive.library import await_lock, check_size, uninterrupted
@@ -215,7 +215,7 @@ def _encoding(ds: xr.Dataset) -> dict[str, dict[str, Any]]:
     """How to store each variable."""
     encoding: dict[str, dict[str, Any]] = {}
     for name, variable in ds.variables.items():
-        entry = chunked(str(name), variable.dtype, variable.shape, variable.nbytes)
+        entry = chunked(str(name), variable.dtype, variable.shape, variable.nbytes) | text_storage(variable)
         if variable.dtype.kind == "f" and name in ds.coords:
             entry["_FillValue"] = None  # coordinates have no gaps
         encoding[str(name)] = entry

@@ -12,6 +12,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gearidae.archive.variables import PLACES, POPULATION_EVENTS, ROW_VARIABLES
+from gearidae.errors import SceneError
 from gearidae.records import ROWS, Flank, Rows, Solution
 from gearidae.scene import Scene
 from gearidae.scene.sampled import rows_of
@@ -127,12 +128,22 @@ def own_rows(ds: xr.Dataset) -> xr.Dataset:
     -------
     xarray.Dataset
         With the events and passages only that carry the labels of its runs.
+
+    Raises
+    ------
+    SceneError
+        If a label of the rows lies along the runs, too.
     """
     for kind in kinds_in(ds) if "swept" in ds.attrs else ():
         mask = np.ones(ds.sizes[kind.dim], dtype=bool)
         for name in map(str, ds.coords):
             label = f"{kind.dim}_{name}"
             if name not in LABELS and label in ds.variables and ds[name].ndim < 2:
+                if ds[label].ndim > 1:
+                    allowed = (
+                        f"must lie along {kind.dim} alone; where() repeats it: pick runs with sel() or isel()"
+                    )
+                    raise SceneError("dataset", f"{label} {ds[label].dims}", allowed)
                 mask &= np.isin(ds[label].values, ds[name].values)
         ds = ds if mask.all() else ds.isel({kind.dim: mask})
     return ds

@@ -54,6 +54,8 @@ def read_scene(case: str, settings: Sequence[str]) -> Scene:
     presets = dict(zip(PRESETS, PRESETS, strict=True)) | _ALSO_PRESETS
     if path.exists() or case not in presets | shipped:
         meant = "" if path.exists() or path.suffix else did_you_mean(case, presets | shipped)
+        if not path.exists() and (beside := path.with_name(f"{path.name}.toml")).is_file():
+            meant = f"did you mean {beside}?"
         if meant:
             raise SceneError("case", case, f"is no file, no preset and no shipped case; {meant}")
         scene = load_case(case)

@@ -15,6 +15,7 @@ from gearidae.analysis.verdict.table import cells, headings
 from gearidae.archive.select import scene_of, swept_dims
 from gearidae.archive.specimen import specimen_note
 from gearidae.archive.summary_rows import summary_rows
+from gearidae.archive.value_text import label_cells
 from gearidae.cli.output import print_error, print_line, show, show_rows
 from gearidae.scene.validity_row import ATTRIBUTE, mean_note, rows_from_json
 
@@ -44,7 +45,7 @@ def show_outcomes(ds: xr.Dataset) -> None:
         else:
             table.add_column(heading, justify="right", no_wrap=True)
     for outcome in judged:
-        table.add_row(*(_plain(value) for value in outcome.label.values()), *cells(outcome, rtol))
+        table.add_row(*label_cells(ds, outcome.label), *cells(outcome, rtol))
     show(table)
     if specimen := specimen_note(ds):
         print_line(specimen)

@@ -23,11 +23,14 @@ class ParameterAxis:
         Name and unit.
     words : tuple of str
         Names of the places where the values are no numbers; else empty.
+    limit : float, optional
+        Largest value that there is, in the unit of the label.
     """
 
     places: NDArray[np.float64]
     label: str
     words: tuple[str, ...] = ()
+    limit: float | None = None
 
 
 def parameter_axis(coordinate: xr.DataArray) -> ParameterAxis:
@@ -43,7 +46,7 @@ def parameter_axis(coordinate: xr.DataArray) -> ParameterAxis:
     if not np.issubdtype(values.dtype, np.number):
         return ParameterAxis(np.arange(len(values), dtype=np.float64), name, tuple(map(str, values.tolist())))
     if name == "sam_fraction":
-        return ParameterAxis(100.0 * values, "SAM (%)")
+        return ParameterAxis(100.0 * values, "SAM (%)", limit=100.0)
     scale = scaled(float(np.abs(values).max()), str(coordinate.attrs.get("units", "1")))
     unit = "" if scale.unit == "1" else f" ({scale.unit})"
     return ParameterAxis(values * scale.factor, f"{name.replace('_', ' ')}{unit}")

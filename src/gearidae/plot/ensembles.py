@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -47,15 +49,11 @@ def sticking_probability(
     name = names[over]
     along = parameter_axis(estimate[name])
     ax = new_axes(ax, height=3.8)
-    ax.fill_between(
-        along.places,
-        estimate["low"],
-        estimate["high"],
-        color=POSITIVE,
-        alpha=0.25,
-        linewidth=0,
-        label="95 % band",
-    )
+    look: dict[str, Any] = {"color": POSITIVE, "alpha": 0.25, "label": "95 % band"}
+    if len(along.places) > 1:
+        ax.fill_between(along.places, estimate["low"], estimate["high"], linewidth=0, **look)
+    else:  # a band would have no width
+        ax.vlines(along.places, estimate["low"], estimate["high"], linewidth=6, **look)
     ax.plot(
         along.places,
         estimate["probability"],

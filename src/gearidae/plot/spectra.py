@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -199,7 +200,7 @@ def impact_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     Returns
     -------
     Axes
-        Density over its largest value, each peak marked with its frequency.
+        Density over that of the ring, whose frequency stands beside the peak of a single run and else in the legend.
 
     Raises
     ------
@@ -208,7 +209,7 @@ def impact_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     """
     shown = runs_of(ds, "gear_speed")
     ax = new_axes(ax)
-    highest = 0.0
+    drawn, highest, nyquist = [], 0.0, math.inf
     for run in shown:
         record = _between(run.data, 0, _MOST_SAMPLES)
         rings = analysis.impact_frequencies(record)["frequency"]
@@ -217,7 +218,8 @@ def impact_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
             continue
         density = analysis.impact_spectrum(record).isel(impact=int(ringing[0]))
         ring = float(rings[ringing[0]])
-        highest = max(highest, ring)
+        highest, nyquist = max(highest, ring), float(density["frequency"][-1])
+        drawn.append(replace(run, label=f"{run.label}: {ring:.0f} Hz".removeprefix(": ")))
         at_ring = float(density.sel(frequency=ring, method="nearest"))
         ax.plot(
             density["frequency"],
@@ -225,26 +227,20 @@ def impact_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
             color=run.colour,
             linestyle=run.line,
             linewidth=1.0,
-            label=run.label,
-        )
-        ax.annotate(
-            f"{ring:.0f} Hz",
-            (ring, 1.0),
-            xytext=(3, 2),
-            textcoords="offset points",
-            fontsize="small",
-            color=run.colour,
+            label=drawn[-1].label,
         )
     if not highest:
         raise SceneError("plot", "impact_spectrum", "no impact rings in the dataset")
-    ax.set_xlim(0.0, 2.0 * highest)
+    ax.set_xlim(0.0, min(nyquist, 2.0 * highest))
     ax.set_ylim(0.0, 1.25)
     ax.xaxis.set_major_formatter(EngFormatter("Hz"))
     ax.set_xlabel("frequency")
     ax.set_ylabel("power spectral density\nover that of the ring")
     tidy(ax)
-    if len(ax.get_legend_handles_labels()[0]) == len(shown):
-        legend(ax, shown)
+    if len(drawn) == 1:
+        place: dict[str, Any] = {"xytext": (3, 2), "textcoords": "offset points"}
+        ax.annotate(drawn[0].label, (highest, 1.0), **place, fontsize="small", color=drawn[0].colour)
+    legend(ax, drawn)
     return ax
 
 

@@ -78,9 +78,11 @@ def _strips(ax: Axes, runs: list[Run], low: float, high: float, scale: Scale) ->
     """Draw runs below each other, each about its own zero line."""
     time = label_time(ax, runs)
     step = 1.12 * (high - low) or 1.0
+    cut = False
     for place, run in enumerate(runs):
         at, torque = run.trace(_TORQUE)
         clipped = np.clip(torque, low, high)
+        cut = cut or not np.array_equal(clipped, torque, equal_nan=True)
         zero = -place * step
         ax.axhline(zero * scale.factor, color="0.6", linewidth=0.6, zorder=1)
         for part, colour in ((np.maximum(clipped, 0.0), POSITIVE), (np.minimum(clipped, 0.0), NEGATIVE)):
@@ -100,9 +102,10 @@ def _strips(ax: Axes, runs: list[Run], low: float, high: float, scale: Scale) ->
     ax.tick_params(axis="y", length=0)
     ax.grid(visible=False, axis="y")
     ax.spines["left"].set_visible(False)
-    shown = number_shown(runs)
+    details = [number_shown(runs), "start-up cut off" * cut]
     ax.set_title(
-        f"contact torque on the gear{', ' * bool(shown)}{shown}: drives it (blue), holds it back by adhesion (orange)",
+        f"{', '.join(filter(None, ['contact torque on the gear', *details]))}\n"
+        "drives it (blue), holds it back by adhesion (orange)",
         loc="left",
         fontsize="medium",
     )

@@ -17,6 +17,7 @@ from gearidae.archive.dataset import dimension_names
 from gearidae.archive.pieces import pieces
 from gearidae.archive.select import is_roller, runs, scene_of, swept_dims
 from gearidae.archive.summary_rows import summary_rows
+from gearidae.archive.value_text import label_cells, measure_text, number_text, value_text, values_text
 from gearidae.records import EventKind
 from gearidae.report import html
 from gearidae.scene import describe_keys
@@ -24,8 +25,6 @@ from gearidae.scene.prefixes import with_prefix
 from gearidae.scene.shown import flat
 from gearidae.scene.validity_row import ATTRIBUTE, contact_subject, rows_from_json
 
-_NAMED_KEYS = 12
-_PREFIXED = ("m", "s", "N", "J", "Pa", "Hz", "W")
 _PROVENANCE = (
     ("title", "title"),
     ("date_created", "created"),
@@ -55,7 +54,7 @@ def outcome_table(ds: xr.Dataset) -> str:
     rtol = scene_of(ds)["run"]["rtol"]
     dims = swept_dims(ds)
     names = (*dims, *headings(judged[0]))
-    rows = [[*_label_cells(ds, outcome.label), *cells(outcome, rtol)] for outcome in judged]
+    rows = [[*label_cells(ds, outcome.label), *cells(outcome, rtol)] for outcome in judged]
     numeric = [place for place in range(len(names)) if place != len(dims)]
     return html.table(names, rows, caption="Outcome of each run", numeric=numeric)
 
@@ -89,7 +88,7 @@ def member_table(ds: xr.Dataset, listed: Sequence[str]) -> str:
         drawn = [str(name) for name in ds.coords if name != "member" and ds[name].dims == ("member",)]
         columns = [*drawn, *listed]
         rows = [
-            [str(number), *(_value(member[name].item(), _unit(member[name])) for name in columns)]
+            [str(number), *(value_text(member[name].item(), _unit(member[name])) for name in columns)]
             for number, member in ((number, ds.isel(member=number)) for number in range(ds.sizes["member"]))
         ]
         table = html.table(("member", *(name.replace("_", " ") for name in columns)), rows, caption="Members")
@@ -101,7 +100,7 @@ def member_table(ds: xr.Dataset, listed: Sequence[str]) -> str:
         rows = [
             [
                 str(number),
-                *(_value(values.item(), _unit(values)) for values in values_of),
+                *(value_text(values.item(), _unit(values)) for values in values_of),
                 *cells(member, rtol),
             ]
             for number, (member, *values_of) in enumerate(
@@ -135,10 +134,10 @@ def event_table(ds: xr.Dataset) -> str:
     rows = []
     for label, counted in events:
         made = counted.counts[EventKind.ONSET]
-        first = _measure(counted.first, "s") if made else "-"
+        first = measure_text(counted.first, "s") if made else "-"
         fastest = with_prefix(max(counted.fastest, 0.0), "m/s") if made else "-"
         counts = [str(counted.counts[kind]) for kind in kinds]
-        rows.append([*_label_cells(ds, label), *counts, first, fastest])
+        rows.append([*label_cells(ds, label), *counts, first, fastest])
     names = [kind.name.lower().replace("_", " ") for kind in kinds]
     headings = [*dims, *names, "first onset", "fastest closing at an onset"]
     return html.table(headings, rows, caption="Events of each run", numeric=range(len(headings)))
@@ -178,9 +177,9 @@ def parameter_tables(ds: xr.Dataset) -> str:
     for key, value in _flatten(scene, swept):
         info = known.get(".".join(part for part in key.split(".") if not part.isdecimal()))
         unit, meaning = (info.unit, info.description) if info else ("", "")
-        shown = f"swept: {_values(swept[key], unit)}" if key in swept else _value(value, unit)
+        shown = f"swept: {values_text(swept[key], unit)}" if key in swept else value_text(value, unit)
         if key in drawn:
-            shown = f"drawn from {drawn[key]}: {_values(swept.get(key, []), unit)}"
+            shown = f"drawn from {drawn[key]}: {values_text(swept.get(key, []), unit)}"
         rows.append((key, shown, meaning))
     return html.table(("key", "value", "meaning"), rows, caption="Parameters of the scene")
 
@@ -193,7 +192,7 @@ def law_table(ds: xr.Dataset) -> str:
         return ""
     if not isinstance(law, dict):
         return ""
-    rows = [(key, _value(value, "")) for key, value in law.items()]
+    rows = [(key, value_text(value, "")) for key, value in law.items()]
     rows.append(("source", str(ds.attrs.get("law_source", ""))))
     return html.table(("loss law", "in SI units"), rows, caption="How coverage is lost")
 
@@ -223,8 +222,8 @@ def provenance_list(ds: xr.Dataset) -> str:
 
 def _provenance(key: str, value: Any) -> str:
     if key == "wall_time" and isinstance(value, (int, float, np.number)):
-        return _measure(value, "s")
-    return _number(value)
+        return measure_text(value, "s")
+    return number_text(value)
 
 
 def _flatten(tables: dict[str, Any], swept: dict[str, Any]) -> Iterator[tuple[str, Any]]:
@@ -236,44 +235,3 @@ def _flatten(tables: dict[str, Any], swept: dict[str, Any]) -> Iterator[tuple[st
                 seen.add(f"{name}.{key}")
                 yield f"{name}.{key}", value
     yield from ((key, None) for key in swept if key not in seen)
-
-
-def _value(value: Any, unit: str) -> str:
-    """Write the value of a key; of a list, which may have thousands of knots, no more than its ends."""
-    if isinstance(value, list):
-        return _values(value, "")
-    if isinstance(value, float) and unit == "rad":
-        return f"{math.degrees(value):.6g} deg"
-    if isinstance(value, float) and unit == "1/m^2":
-        return f"{1e-12 * value:.6g} 1/um^2"
-    if isinstance(value, float) and unit not in ("", "1"):
-        return _measure(value, unit)
-    return _number(value) if isinstance(value, (int, float, str)) else json.dumps(value)
-
-
-def _values(values: list[Any], unit: str) -> str:
-    shown = [
-        _value(value, unit)
-        for value in (values if len(values) <= _NAMED_KEYS else [*values[:6], *values[-3:]])
-    ]
-    if len(values) > _NAMED_KEYS:
-        shown.insert(6, f"... ({len(values)} in all) ...")
-    return ", ".join(shown)
-
-
-def _label_cells(ds: xr.Dataset, label: dict[str, Any]) -> list[str]:
-    """Write the swept values of a run, with their units."""
-    return [_value(value, str(ds[dim].attrs.get("units", "1"))) for dim, value in label.items()]
-
-
-def _measure(value: Any, unit: str) -> str:
-    """Write a quantity with a prefix; texts have none, nor have units that take none."""
-    if isinstance(value, str) or unit.split(" ")[0].split("/")[0].split("^")[0] not in _PREFIXED:
-        return f"{_number(value)} {unit}".rstrip()
-    return with_prefix(float(value), unit, 6)
-
-
-def _number(value: Any) -> str:
-    if isinstance(value, (float, np.floating)):
-        return "-" if math.isnan(value) else f"{value:.6g}"
-    return str(value)

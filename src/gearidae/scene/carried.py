@@ -8,7 +8,6 @@ converted. Truth values, dates and complex numbers are no numbers.
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping
 from contextlib import suppress
 from datetime import timedelta
@@ -18,10 +17,8 @@ from typing import Any, Final
 import numpy as np
 
 from gearidae.arrays import Floats
-from gearidae.scene.units import from_text, refuse_bare
+from gearidae.scene.units import cf_unit, from_text, refuse_bare
 
-_EXPONENT: Final = re.compile(r"(?<=[A-Za-z])(?=-?\d)")
-"""Where an exponent begins in a unit as CF writes it (``s-1``)."""
 _SECOND: Final = np.timedelta64(1, "s")
 _MISSING: Final = ("NAType", "NaTType")
 _KINDS: Final = {"b": "truth values", "M": "dates and times of day", "c": "complex numbers"}
@@ -37,11 +34,6 @@ def carried_unit(value: Any) -> tuple[str, Any]:
     if hasattr(inside, "magnitude"):
         return carried_unit(inside)
     return cf_unit(str(attributes.get("units", ""))), inside
-
-
-def cf_unit(units: str) -> str:
-    """Write the exponents of a CF unit (``s-1``) as scenes do (``s^-1``)."""
-    return _EXPONENT.sub("^", units)
 
 
 def number_of(value: object, unit: str, stated: str = "") -> float | None:

@@ -75,8 +75,10 @@ class Group(BaseModel):
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """Return a question naming the known word closest to `word`, empty if none is close."""
-    close = difflib.get_close_matches(word, known, n=1, cutoff=0.6)
+    """Return a question naming the known word that begins with `word` or is closest to it, empty if none is close."""
+    known = list(known)
+    begun = [name for name in known if name.startswith(word)]
+    close = begun if len(begun) == 1 else difflib.get_close_matches(word, known, n=1, cutoff=0.6)
     return f"did you mean {close[0]}?" if close else ""
 
 

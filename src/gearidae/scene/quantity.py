@@ -182,7 +182,8 @@ class Count(_Bounded):
         """
         number = number_of(value, "1")
         if number is None or not number.is_integer() or not self.admits(number):
-            raise ValueError(self.allowed())
+            quoted = isinstance(value, str) and value.strip().isdecimal()
+            raise ValueError(self.allowed() + ", without quotes" * quoted)
         return int(number)
 
     def allowed(self) -> str:
@@ -254,7 +255,8 @@ def _read_switch(value: object) -> bool:
     """Read true or false, also numpy's; what is merely like one of them, such as 0 or "no", is refused."""
     value = value.item() if isinstance(value, np.bool_) else value
     if not isinstance(value, bool):
-        raise ValueError("must be true or false")
+        quoted = isinstance(value, str) and value.strip().lower() in ("true", "false")
+        raise ValueError("must be true or false" + ", without quotes" * quoted)
     return value
 
 

@@ -173,7 +173,7 @@ class TextTable:
     ) -> NDArray[np.float64]:
         """Read a table with holes, or find its first fault."""
         numbers = array("d")
-        count, width, last_is_empty = 0, 0, True
+        count, width, last_is_empty = 0, len(self.headings if columns is None else columns), True
         for line, count, cells in self.rows():
             if most is not None and count > most:
                 raise ValueError(_too_many(most))

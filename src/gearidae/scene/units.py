@@ -21,6 +21,9 @@ _NUMBER_AND_UNIT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s
 _UNIT = re.compile(r"(?:[^\W\d_]|[ _*/()%])*")
 _POWER = re.compile(r"(?:\^|\*\*)\s*[+-]?\s*[1-9](?![\w.^])(?!\s*(?:\*\*|\^))")
 _LONE_ONE = re.compile(r"(?<![\w.])1(?![\w.])")
+_EXPONENT = re.compile(r"(?<=[^\W\d_])(?=-?\d)")
+"""Where an exponent begins in a unit as CF writes it (``s-1``)."""
+_DECIMAL_COMMA = re.compile(r",\d")
 _SUPERSCRIPT = re.compile("(\u207b?)([\u00b9\u00b2\u00b3\u2074])")
 _PLAIN = str.maketrans(
     {
@@ -113,6 +116,11 @@ def refuse_bare(texts: Iterable[object]) -> None:
         )
 
 
+def cf_unit(units: str) -> str:
+    """Write the exponents of a CF unit (``s-1``) as scenes do (``s^-1``)."""
+    return _EXPONENT.sub("^", units)
+
+
 def to_si(text: str) -> float:
     """Read a text with any unit, or none, as a number in SI base units.
 
@@ -145,6 +153,9 @@ def _scale(own_unit: str, unit: str, difference: bool) -> tuple[Decimal, Decimal
     """Return how many `unit` one `own_unit` is, and what its zero is."""
     if not own_unit:
         return Decimal(1), Decimal(0)
+    if _DECIMAL_COMMA.match(own_unit):
+        raise ValueError(f"has a comma in its number: the decimal sign is a point; expected {_wanted(unit)}")
+    own_unit = cf_unit(own_unit)
     bare = _LONE_ONE.sub("", _POWER.sub("", own_unit))
     # a power that begins the unit would be one of the number
     if own_unit.startswith(("^", "**")) or not _UNIT.fullmatch(bare):
@@ -216,4 +227,6 @@ def _counts_cycles(name: str) -> bool:
 def _registry() -> pint.UnitRegistry[Decimal]:
     import pint
 
-    return pint.UnitRegistry(non_int_type=Decimal)
+    registry: pint.UnitRegistry[Decimal] = pint.UnitRegistry(non_int_type=Decimal)
+    registry.define("newton_meter = newton * meter = Nm")  # pint would read "Nm" as a number of metres
+    return registry

@@ -19,8 +19,8 @@ from gearidae.archive.variables import EXTREMES, STANDSTILL_LIST
 from gearidae.errors import SceneError
 from gearidae.records import Events, Passages
 from gearidae.scene import Scene
-from gearidae.scene.carried import cf_unit, number_of
-from gearidae.scene.units import from_text
+from gearidae.scene.carried import number_of
+from gearidae.scene.units import cf_unit, from_text
 from gearidae.studies.declared import studies
 from gearidae.studies.products import kind_of
 

@@ -24,6 +24,7 @@ _STANDARD_ERRORS = 3.0
 _FEW = 200  # summits: 5 % standard error of the rms height
 _DIRECTED = 1.3
 _DISAGREEING = 0.25
+_OBLONG = 1.01
 
 
 def remarks(ds: xr.Dataset, cutoff: float | None) -> tuple[str, ...]:
@@ -46,6 +47,13 @@ def remarks(ds: xr.Dataset, cutoff: float | None) -> tuple[str, ...]:
         share = 100.0 * ds.attrs["hole_share"]
         many = "1 hole" if holes == 1 else f"{holes} holes"
         said.append(f"{many} ({share:.2g} % of the points) filled by interpolation and not counted.")
+    between_rows, along_rows = np.divide(ds.attrs["size"], ds.attrs["points"])
+    if not 1.0 / _OBLONG < between_rows / along_rows < _OBLONG:
+        between, along = with_prefix(between_rows, "m"), with_prefix(along_rows, "m")
+        said.append(
+            f"Rows are {between} apart, points along them {along}: if rows are missing, as of a scan that was stopped, "
+            "give the extent of those that are there (size, --size)."
+        )
     counted = zip(("rows", "columns"), ds.attrs["repeated_lines"], ds.attrs["points"], strict=True)
     said += [
         f"{count} of {points} {lines} equal another one, or have one height throughout, as where a scan has stopped: "

@@ -245,7 +245,7 @@ def _attributes(
     return {
         **provenance(scene, "calibrated", swept=tuple(prior.key for prior in priors)),
         "title": f"{scene.name}: calibration of {', '.join(prior.key for prior in priors)}",
-        "summary": f"Posterior of {', '.join(prior.key for prior in priors)}, given {len(seen)} observations.",
+        "summary": f"Posterior of {', '.join(prior.key for prior in priors)}. Observations: {len(seen)}.",
         "calibration": json.dumps(settings_used),
     }
 

@@ -44,7 +44,9 @@ def _call(
         "frequencies": listed,
         "length": None if length is None else quantity("--length", length, "m"),
     }
-    return Call((), options, f"{len(parts) or 1} frequencies, until what joints slide in a turn is steady")
+    count = len(parts) or 1
+    many = "1 frequency" if count == 1 else f"{count} frequencies"
+    return Call((), options, f"{many}, until the sliding of the joints in a turn is steady")
 
 
 def _first(point: xr.Dataset) -> str:

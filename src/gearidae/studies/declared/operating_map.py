@@ -225,6 +225,9 @@ def picture(chart: xr.Dataset, ax: Axes | None = None) -> Axes:
         ax.set_xticks(across.places, across.words)
     if along.words:
         ax.set_yticks(along.places, along.words)
+    for which, along_axis in (("x", across), ("y", along)):
+        if along_axis.limit is not None:
+            ax.set(**{f"{which}lim": np.minimum(getattr(ax, f"get_{which}lim")(), along_axis.limit)})
     ax.set_xlabel(across.label)
     ax.set_ylabel(along.label)
     present = set(chart["outcome"].values.ravel().tolist())
