@@ -305,14 +305,18 @@ def test_a_continued_run_goes_on_with_them(worn):
     assert total(coated) == pytest.approx(_loss(coated) - _loss(first), rel=0.05, abs=0)
 
 
-def test_nothing_is_lost_where_a_stop_condition_ends_a_run():
+def test_nothing_is_lost_where_a_run_ends():
     """The contact may be closing there: what it has joined since its turning point is in the sums, and in the state."""
     scene = LOW.replace({**OFF, "run.exposures": 4, "coating.sam_fraction": 0.3, "run.duration": 0.1})
-    first = gd.simulate(scene.replace({"run.stop": "sticks"}))
-    assert float(first.stick_time) < 0.03
-    assert total(first) == pytest.approx(_loss(first), rel=1e-12, abs=0)
-    second = gd.simulate(scene.replace({"run.duration": 1e-3}), start=first)
-    assert total(second) == pytest.approx(_loss(second), rel=1e-12, abs=0)
+    stuck = gd.simulate(scene.replace({"run.stop": "sticks"}))
+    assert float(stuck.stick_time) < 0.03
+    for first in (
+        stuck,
+        *(gd.simulate(scene.replace({"run.duration": end})) for end in (0.024, 0.028, 0.04)),
+    ):
+        assert total(first) == pytest.approx(_loss(first), rel=1e-12, abs=0)
+        second = gd.simulate(scene.replace({"run.duration": 1e-2}), start=first)
+        assert total(second) == pytest.approx(_loss(second), rel=1e-12, abs=0)
 
 
 def test_sweeps_have_them_along_their_dimension(worn):

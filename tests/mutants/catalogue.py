@@ -437,7 +437,7 @@ MUTANTS = (
         "engine/integrate/accepted_step.py",
         "    if driver.done != 0 or driver.error != 0:\n",
         "    if driver.error != 0:\n",
-        ("engine/test_exposures.py::test_nothing_is_lost_where_a_stop_condition_ends_a_run",),
+        ("engine/test_exposures.py::test_nothing_is_lost_where_a_run_ends",),
     ),
     Mutant(
         "error estimate of sliding work without effect",
