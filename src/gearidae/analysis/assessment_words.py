@@ -120,9 +120,7 @@ def listed(frequencies: Floats) -> str:
 def lone_words(signal: Signal, alone: Sequence[int]) -> str:
     """Name a sample that is a spike."""
     first, values = alone[0], signal.values
-    more = (
-        f"; so {'is 1 more' if len(alone) == 2 else f'are {len(alone) - 1} more'}" if len(alone) > 1 else ""
-    )
+    more = f" (and {len(alone) - 1} more like it)" if len(alone) > 1 else ""
     return (
         f"sample {first} ({signal.time[first]:.9g} s) is {values[first]:.4g} rad/s beside "
         f"{values[max(first - 1, 0)]:.4g} rad/s: a spike or a missed pulse, no motion of the gear{more}; leave such "

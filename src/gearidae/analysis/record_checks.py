@@ -51,8 +51,8 @@ _SURE = 0.005
 """Relative standard uncertainty of that difference at least."""
 _LONE, _ABOVE_NOISE, _AGREEING, _MOST_ALONE, _NEIGHBOURS = 0.4, 6.0, 0.2, 2, 9
 """Up to two samples are alone if they are off the median of nine by this part of the usual speed, and those beside them
-by less than a fifth of that: a missed pulse halves the speed, ringing goes on for many samples. Of a gear that stands,
-noise is all there is of a speed."""
+by less than a fifth of that: a missed pulse halves the speed, ringing goes on for many samples. Lone samples are also
+off by six standard deviations of the noise: the speed of a gear that stands is noise alone."""
 _FADED = 0.5
 """A ring falls below this part of its amplitude before the next impact; in all runs of the preset, to a hundredth."""
 
