@@ -229,6 +229,22 @@ def test_unknown_tables(gears: Scene) -> None:
         Scene.from_dict({**gears.to_dict(), "sam_fraction": 1})
 
 
+@pytest.mark.parametrize(
+    ("table", "name", "meant"),
+    [
+        ("drive", "duration", r"run\.duration"),
+        ("mesh", "sam_fraction", r"coating\.sam_fraction"),
+        ("run", "torque", r"drive\.torque or load\.torque"),
+        ("drive", "pin_frictoin", "pin_friction"),
+    ],
+)
+def test_a_key_in_the_wrong_table_is_named_with_its_own(table, name, meant):
+    tables = preset("teodorescu2009").to_dict()
+    tables[table] = tables[table] | {name: 0.5}
+    with pytest.raises(SceneError, match=rf"^{table}\.{name} = 0\.5: unknown key; did you mean {meant}\?$"):
+        Scene.from_dict(tables)
+
+
 REQUIRED = [
     info.key
     for info in describe_keys()

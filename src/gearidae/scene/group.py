@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from numbers import Real
 from typing import Any
 
@@ -14,6 +14,7 @@ from gearidae.errors import SceneError
 
 _LONGEST_VALUE = 60
 _MISSING = "(missing)"
+_UNKNOWN = "unknown key; "
 _NOT_NOTED: set[str] = set()
 """Shared by all tables, and never changed."""
 
@@ -40,7 +41,7 @@ class Group(BaseModel):
         try:
             super().__init__(**data)
         except ValidationError as error:
-            raise _scene_error(error) from error
+            raise _scene_error(error, self._elsewhere) from error
         # pydantic notes which fields were given, which nobody asks: as sets of their own most of a scene's memory
         object.__setattr__(self, "__pydantic_fields_set__", _NOT_NOTED)
 
@@ -71,7 +72,13 @@ class Group(BaseModel):
     @classmethod
     def _unknown(cls, key: str, known: list[str]) -> str:
         """Say what to write in place of an unknown `key`."""
-        return f"unknown key; {did_you_mean(key, known) or 'known are ' + ', '.join(known)}"
+        meant = did_you_mean(key, known) or _meant(cls._elsewhere(key))
+        return _UNKNOWN + (meant or "known are " + ", ".join(known))
+
+    @classmethod
+    def _elsewhere(cls, name: str) -> list[str]:
+        """Return the dotted keys of this name in the tables of a scene; a table alone knows no other."""
+        return []
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
@@ -79,7 +86,11 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     known = list(known)
     begun = [name for name in known if name.startswith(word)]
     close = begun if len(begun) == 1 else difflib.get_close_matches(word, known, n=1, cutoff=0.6)
-    return f"did you mean {close[0]}?" if close else ""
+    return _meant(close)
+
+
+def _meant(keys: list[str]) -> str:
+    return f"did you mean {' or '.join(keys)}?" if keys else ""
 
 
 def shorten(value: object) -> object:
@@ -96,9 +107,15 @@ def shorten(value: object) -> object:
     return text if len(text) <= _LONGEST_VALUE else text[: _LONGEST_VALUE - 3] + "..."
 
 
-def _scene_error(error: ValidationError) -> SceneError:
-    """Turn pydantic's report into one line: its first complaint, all missing keys, and how many there are besides."""
+def _scene_error(error: ValidationError, elsewhere: Callable[[str], list[str]]) -> SceneError:
+    """Turn pydantic's report into one line: its first complaint, all missing keys, and how many there are besides.
+
+    A key that stands in the wrong table is named with its tables, from `elsewhere`.
+    """
     (key, value, allowed), *others = _complaints(error)
+    if allowed.startswith(_UNKNOWN):
+        homes = _meant(elsewhere(key.rpartition(".")[2]))
+        allowed = _UNKNOWN + homes if homes else allowed
     if value == _MISSING and (also := [other for other, what, _ in others if what == _MISSING]):
         allowed += f"; so {'is' if len(also) == 1 else 'are'} {', '.join(also)}"
         others = [other for other in others if other[0] not in also]

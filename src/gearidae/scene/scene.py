@@ -15,7 +15,7 @@ from gearidae.scene.coating_table import check_tables
 from gearidae.scene.combinations import check_combinations
 from gearidae.scene.friction import check_friction, check_no_friction
 from gearidae.scene.gears import Gears, Mesh
-from gearidae.scene.group import Group, did_you_mean, shorten
+from gearidae.scene.group import Group, shorten
 from gearidae.scene.joints import check_joints
 from gearidae.scene.keys import INSTEAD, KeyInfo, find_key, keys_of, put
 from gearidae.scene.limits import (
@@ -281,12 +281,9 @@ class Scene(Group):
         return json_schema(cls)
 
     @classmethod
-    def _unknown(cls, key: str, known: list[str]) -> str:
-        """Point at the table that a key without one belongs to."""
-        homes = [info.key for info in describe_keys() if info.key.rpartition(".")[2] == key]
-        if homes and not did_you_mean(key, known):
-            return f"unknown key; did you mean {' or '.join(homes)}?"
-        return super()._unknown(key, known)
+    def _elsewhere(cls, name: str) -> list[str]:
+        """Return the keys of this name in all tables."""
+        return [info.key for info in describe_keys() if info.key.rpartition(".")[2] == name]
 
 
 class GearScene(Scene):
