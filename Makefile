@@ -4,7 +4,7 @@
 # make test-lowest  a short suite in a second environment, with the lowest versions that the package promises
 # make test-newest  the same with the newest versions of everything and the Python that NEWEST_PYTHON names; `make run` in it, too
 # make docs  the documentation: docs/_build/html/index.html
-# make bench    run time against error, all scenes: the benchmark's page anew (some twenty minutes)
+# make bench    run time against error, all scenes: the benchmark's page anew (some fifty minutes)
 # make stress   2,000 random scenes: the stress page anew (some minutes)
 # All need python3 (3.11 or newer) and network access to a package index, nothing else.
 
