@@ -136,7 +136,9 @@ def test_init_writes_a_case_that_is_the_preset(folder, capfd):
     assert scene == gd.preset("teodorescu2009").replace({"name": "mine"})
     assert "#" in (folder / "mine.toml").read_text()
     before = (folder / "mine.toml").read_bytes()
+    capfd.readouterr()
     assert main(["init", "mine.toml"]) == 2
+    assert "mine.toml: exists already" in capfd.readouterr().err
     assert (folder / "mine.toml").read_bytes() == before
 
 

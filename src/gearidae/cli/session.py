@@ -28,8 +28,8 @@ __all__ = ["app", "session"]
 _WRITERS = {"init", "plot", "report", "run", "sweep", *command_help()}
 """Commands that write a file. The output of the other commands is their result and is not suppressed."""
 
-_WRITTEN = ("-o", "--output", "--picture", "--asperities")
-"""Options of files to write."""
+_WRITTEN = ("-o", "--output", "--picture", "--asperities", "init")
+"""What stands before a file to write: options, and the command that takes the file's name."""
 
 log = logging.getLogger("gearidae")
 
@@ -87,7 +87,7 @@ def session(
 
 
 def _read(tokens: tuple[str, ...]) -> Iterator[str]:
-    """Yield what may be files that a command reads: all that does not follow an option of a file to write."""
+    """Yield what may be files that a command reads: all that does not follow one of `_WRITTEN`."""
     for before, token in pairwise(("", *tokens)):
         option, _, value = token.partition("=")
         if before not in _WRITTEN and option not in _WRITTEN:
