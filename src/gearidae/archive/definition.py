@@ -43,9 +43,9 @@ def define(template: xr.Dataset, path: Path, sizes: Mapping[str, int], *, in_pla
     """
     with tempfile.TemporaryDirectory() as folder:
         sample = Path(folder) / "template.nc"
-        encoding: dict[Any, dict[str, Any]] = {name: {"_FillValue": None} for name in template.coords}
-        for name, values in template.variables.items():
-            encoding[name] = encoding.get(name, {}) | text_storage(values)
+        encoding = {name: text_storage(values) for name, values in template.variables.items()}
+        for name in template.coords:
+            encoding[name]["_FillValue"] = None
         template.drop_encoding().to_netcdf(sample, engine="netcdf4", encoding=encoding)
         form: Form = "NETCDF3_64BIT_DATA" if in_place else "NETCDF4"
         with opened(sample) as old, opened(path, "x", form) as new:

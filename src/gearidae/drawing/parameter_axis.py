@@ -24,7 +24,7 @@ class ParameterAxis:
     words : tuple of str
         Names of the places where the values are no numbers; else empty.
     limit : float, optional
-        Largest value that there is, in the unit of the label.
+        Largest value that the quantity can have, in the unit of the label.
     """
 
     places: NDArray[np.float64]

@@ -130,11 +130,14 @@ def is_scheduled(scene: Mapping[str, Any]) -> bool:
 
 
 def _scheduled_turning(extremes: Extremes) -> str:
-    """The same where a torque or the held speed follows a schedule."""
+    """How a gear turned that has not come to stand, where a torque or the held speed follows a schedule.
+
+    A gear whose speed only rose and was zero in the last twentieth of the run has started there.
+    """
     if extremes.last_min_gear_speed > 0.0:
         return "runs"
     only_rose = extremes.speed_fall <= IRREGULAR_ABOVE * extremes.settled_gear_speed
-    return "running up" if only_rose else "irregular"  # the first has started in the last twentieth
+    return "running up" if only_rose else "irregular"
 
 
 def _turning(extremes: Extremes) -> str:

@@ -89,10 +89,7 @@ FRICTION: Final = record_type(  # of flanks and joints: hubs and the pin of a dr
     ("pinion_rubs", INT),  # 1 if a joint of the pinion has friction
     ("gear_rubs", INT),  # 1 if a joint of the gear has
     ("forced", INT),  # 1 if the drive pushes with a pin
-    (
-        "holding",
-        INT,
-    ),  # which dry friction there is, a sum of the values of `gearidae.records.standing.Holding`
+    ("holding", INT),  # kinds of dry friction: a sum of values of `gearidae.records.standing.Holding`
     ("even", REAL),  # coefficient of all materials; 0 where they differ, or the law is another [1]
     ("scale", REAL, (MATERIALS,)),  # limits of the materials' friction, as `force_scale` [F]
     ("table_at", INT, (MATERIALS,)),  # laws of the limits among the tables [index]

@@ -225,9 +225,10 @@ def picture(chart: xr.Dataset, ax: Axes | None = None) -> Axes:
         ax.set_xticks(across.places, across.words)
     if along.words:
         ax.set_yticks(along.places, along.words)
-    for which, along_axis in (("x", across), ("y", along)):
-        if along_axis.limit is not None:
-            ax.set(**{f"{which}lim": np.minimum(getattr(ax, f"get_{which}lim")(), along_axis.limit)})
+    if across.limit is not None:
+        ax.set_xlim(right=min(ax.get_xlim()[1], across.limit))
+    if along.limit is not None:
+        ax.set_ylim(top=min(ax.get_ylim()[1], along.limit))
     ax.set_xlabel(across.label)
     ax.set_ylabel(along.label)
     present = set(chart["outcome"].values.ravel().tolist())

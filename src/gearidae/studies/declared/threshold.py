@@ -79,7 +79,7 @@ def sticking_threshold(
         ends are ``sticks``, where a run sticks or stops within so many exits, and ``passes``, where it passes them, as
         at all values tried beyond. NaN where no run has stuck so early. Along ``run`` all runs: ``value``,
         ``exits_passed`` until it stuck or its time was over, ``stick_time`` (NaN if it has not stuck) and
-        ``simulated_time``. A gear that still moves when the time is over counts for the exits that it has passed alone.
+        ``simulated_time``. A gear that still moves when the time is over counts only for the exits that it has passed.
         Runs that could not be finished are left out; ``left_out`` counts them. The log names both.
 
     Raises

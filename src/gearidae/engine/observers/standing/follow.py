@@ -341,8 +341,8 @@ def standing_at(place: int, t: float, y: Floats, out: Floats) -> None:
 def settle_standing_at(place: int, t: float, y: Floats) -> None:
     """Follow all free gears to the end of a run, after which torques are others.
 
-    They cannot be followed to an earlier time later. A standstill that has ended by then is therefore noted now, and no
-    later one ends before.
+    Free gears are not followed back in time. A standstill that has ended before is therefore noted now, and one that is
+    noted after this ends here or later.
     """
     m = model_at(place)
     s, time, position = m.state.standing, t * m.scene.time_unit, y[PHASE] + m.state.turns
