@@ -151,18 +151,19 @@ class _Run:
 
 def _solve(scene: Scene, rtol: float, budget: int, backend: str) -> _Run:
     problem, statistics = make_problem(scene), Statistics()
-    rows, events, reached, balance, wrong = [], [], 0.0, None, ""
+    rows, events, kept, reached = [], [], [], 0.0
     for block in run_blocks(problem, rtol, scene.run.sample_count, backend, statistics):
         rows.append(block.rows)
         events.append(block.events)
         reached = block.time / (float(problem.model.scene.end) * problem.time_unit)
-        balance = block.balance or balance
-        # what has been exchanged in a first step is no measure of what may be neglected
-        if statistics.steps > 1 and block.balance is not None and block.extremes is not None:
-            wrong = wrong or complaint_about_exposures(scene, block.balance, block.extremes)
+        if block.balance is not None and block.extremes is not None:
+            kept.append((block.balance, block.extremes))
         if statistics.steps * (1 if _is_rigid(problem) else ELASTIC_SHARE) >= budget:
             break
-    table = np.concatenate(rows)
+    table, balance = np.concatenate(rows), kept[-1][0] if kept else None
+    # of all of it, as what has been exchanged in the first steps is no measure of what may be neglected
+    exchanged = balance.throughput if balance is not None else 0.0
+    complaints = (complaint_about_exposures(scene, *totals, exchanged) for totals in kept)
     return _Run(
         problem,
         statistics,
@@ -170,7 +171,7 @@ def _solve(scene: Scene, rtol: float, budget: int, backend: str) -> _Run:
         np.concatenate(events),
         min(reached, 1.0),
         _imbalance(scene, balance, table),
-        wrong,
+        next(filter(None, complaints), ""),
     )
 
 

@@ -74,7 +74,9 @@ def complaint_about(scene: Scene, rows: Floats, events: Floats, unit: float, *, 
     return ""
 
 
-def complaint_about_exposures(scene: Scene, balance: EnergyBalance, extremes: Extremes) -> str:
+def complaint_about_exposures(
+    scene: Scene, balance: EnergyBalance, extremes: Extremes, exchanged: float
+) -> str:
     """Name what is wrong with the exposures of a run, if anything is.
 
     Every place's adhesion work is the loss of the contacts made there, so that over all places it is the adhesion loss
@@ -87,6 +89,8 @@ def complaint_about_exposures(scene: Scene, balance: EnergyBalance, extremes: Ex
     balance : EnergyBalance
     extremes : Extremes
         Of the same time.
+    exchanged : float
+        Energy exchanged in the whole run [J].
 
     Returns
     -------
@@ -108,7 +112,7 @@ def complaint_about_exposures(scene: Scene, balance: EnergyBalance, extremes: Ex
     tolerance = max(_ADHESION_TOLERANCE, scene.run.rtol)
     if may_deflect(scene):
         tolerance = max(tolerance, _ELASTIC_TOLERANCE)
-    if abs(work - loss) > tolerance * abs(loss) + _ADHESION_NEGLECTED * balance.throughput:
+    if abs(work - loss) > tolerance * abs(loss) + _ADHESION_NEGLECTED * exchanged:
         return f"the adhesion work of all places is {work:.3e} J, the adhesion loss {loss:.3e} J"
     return ""
 

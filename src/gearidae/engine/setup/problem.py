@@ -137,24 +137,28 @@ class Problem:
     def _longest_free_step(self) -> float:
         """Longest step of free gears: a part of a period of the fastest harmonic; 0 where it need not be bounded.
 
-        Harmonics of more than `PERIODS` periods in a run are not followed one by one.
+        Harmonics of more than `PERIODS` periods in a run are not followed one by one. Steps end at knots of schedules
+        anyway, and at parts of a cubic one.
         """
         s, longest = self.model.scene, math.inf
         span = float(s.end - s.start)
         for shaft in (DRIVE, LOAD):
-            omega = self._fastest(shaft, 0.0)
+            omega = fastest_harmonic(self._harmonics(shaft), 0.0)
             if omega > 0.0:
                 longest = min(longest, max(2.0 * math.pi / omega, span / PERIODS) / PARTS_OF_PERIOD)
             if self.model.work.torque_law[shaft] != 0:
                 longest = min(longest, span / PARTS_OF_LAW)
         return longest if longest < math.inf else 0.0
 
+    def _harmonics(self, shaft: int) -> Floats:
+        torque = self.model.scene.torque[shaft]
+        return self.model.tables[torque.harmonics_at : torque.harmonics_at + 3 * torque.harmonic_count]
+
     def _fastest(self, shaft: int, felt: float) -> float:
         scene, tables = self.model.scene, self.model.tables
-        torque = scene.torque[shaft]
-        harmonics = tables[torque.harmonics_at : torque.harmonics_at + 3 * torque.harmonic_count]
         fastest = max(
-            fastest_harmonic(harmonics, felt), fastest_schedule(scene.schedule[shaft], tables, felt)
+            fastest_harmonic(self._harmonics(shaft), felt),
+            fastest_schedule(scene.schedule[shaft], tables, felt),
         )
         if shaft == DRIVE and scene.speed_gain > 0.0:
             fastest = max(fastest, fastest_schedule(scene.schedule[SPEED], tables, felt / scene.speed_gain))

@@ -51,7 +51,7 @@ def segment_ends(schedule: Record, tables: Floats) -> Floats:
 
     Parameters
     ----------
-    own : record
+    schedule : record
         ``SCHEDULE``.
     tables : ndarray
         Of the model.
@@ -67,7 +67,7 @@ def fastest_schedule(schedule: Record, tables: Floats, felt: float) -> float:
 
     Parameters
     ----------
-    own : record
+    schedule : record
         ``SCHEDULE``.
     tables : ndarray
         Of the model.

@@ -33,6 +33,7 @@ from gearidae.engine.observers.standing.zeros import (
     standing_since,
     stood_until,
 )
+from gearidae.engine.torques.schedule import straight_until
 from gearidae.records.standing import HALF_PITCH
 
 SLOWER: Final = 0.1
@@ -251,18 +252,9 @@ def _stop_time(m: Model, i: int, t: float) -> float:
     """Time over tau when free gears have turned by a pitch and nothing ahead drives harder than before; 0 if never."""
     s = m.state.standing
     copy_zero(m, SPARE, i)
-    low, end = s.zero[i].free_time / m.scene.time_unit, follow_free(m, SPARE, m.scene.end, 1.0)
+    end, begin = follow_free(m, SPARE, m.scene.end, 1.0), s.zero[i].time / m.scene.time_unit
     if s.zero[SPARE].free_farthest < 1.0:
         return 0.0
-    for _ in range(_BISECTIONS):  # within the last of the steps
-        middle = 0.5 * (low + end)
-        copy_zero(m, SPARE, i)
-        follow_free(m, SPARE, middle, math.inf)
-        if s.zero[SPARE].free_farthest < 1.0:
-            low = middle
-        else:
-            end = middle
-    begin = m.state.standing.zero[i].time / m.scene.time_unit
     end = max(end, begin + slowest_period(m), _hardest(m, max(begin, m.scene.start)))
     # behind the present time, so that it is a root
     return max(end, t + 1e-9 * (m.scene.end - m.scene.start))
@@ -282,7 +274,7 @@ def _hardest(m: Model, t: float) -> float:
             most, time = size, t
         if t >= m.scene.end:
             break
-        t = min(knot, t + longest)
+        t = min(straight_until(m, t, knot), t + longest)
     m.state.segment[0], m.state.segment[1], m.state.segment[2] = first, second, third
     return time
 

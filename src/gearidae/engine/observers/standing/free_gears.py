@@ -60,31 +60,34 @@ def _follow_piece(m: Model, i: int, t: float, stop: float, enough: float) -> flo
     least = max(SHORTEST * m.scene.end, 1e-14 * stop)
     h = 1e-3 * (stop - t)
     while t < stop and z.free_farthest < enough:
+        ahead = straight_until(m, t, stop)
         if w == 0.0:
             push = free_torque(m, i, DRIVE, t, x, 0.0)
             if abs(push) <= free_torque(m, i, LOAD, t, x, 0.0) + NO_FORCE:
-                after = _certain_rest(m, i, t, stop)
+                after = _certain_rest(m, i, t, ahead)
                 if after == t:
-                    after = min(max(_rests_until(m, i, x, t, min(stop, t + longest)), t + least), stop)
+                    after = min(max(_rests_until(m, i, x, t, min(ahead, t + longest)), t + least), stop)
                 _accumulate_drive(m, i, t, after)
                 t = after
                 continue
             sign = math.copysign(1.0, push)
             if z.free_farthest == 0.0:
                 z.onset = t * m.scene.time_unit
-        h = min(max(h, least), longest, stop - t)
+        h = min(max(h, least), longest, ahead - t)
         if m.scene.angle_omega > 0.0 and w != 0.0:
             h = min(h, max(_TURN / (m.scene.angle_omega * m.scene.phase_rate * abs(w)), least))
         new_w, new_x, error = _step(m, i, t, h, x, w, sign)
         if error > 1.0 and h > least:
             h *= max(0.2, 0.8 * error ** (-1.0 / 3.0))
             continue
-        after = t + h if h < stop - t else stop
+        after, rate = t + h if h < ahead - t else ahead, m.scene.phase_rate
         if new_w * sign <= 0.0:
             share = _comes_to_rest(m, i, t, h, (x, w), (new_x, new_w), sign)
             after = min(max(t + share * h, t + least), stop)
-            rate = m.scene.phase_rate
             new_x, new_w = cubic(share, h, x, rate * w, new_x, rate * new_w), 0.0
+        elif abs(new_x) > enough:
+            share = _share_until(h, x, rate * w, new_x, rate * new_w, enough)
+            after, new_x = t + share * h, math.copysign(enough, new_x)
         _accumulate_drive(m, i, t, after)
         t, x, w = after, new_x, new_w
         z.free_farthest = max(z.free_farthest, abs(x))
@@ -168,11 +171,23 @@ def _comes_to_rest(
 
 
 @compiled
-def _certain_rest(m: Model, i: int, t: float, stop: float) -> float:
+def _share_until(h: float, x0: float, rate0: float, x1: float, rate1: float, enough: float) -> float:
+    """Share of a step after which free gears are so far away."""
+    low, high = 0.0, 1.0
+    for _ in range(_BISECTIONS):
+        middle = 0.5 * (low + high)
+        if abs(cubic(middle, h, x0, rate0, x1, rate1)) < enough:
+            low = middle
+        else:
+            high = middle
+    return high
+
+
+@compiled
+def _certain_rest(m: Model, i: int, t: float, to: float) -> float:
     """Time up to which bounds of both torques say that free gears stay at rest; `t` if they do not say so."""
     if m.work.torque_law[DRIVE] != 0 or m.work.torque_law[LOAD] != 0:
         return t
-    to = straight_until(m, t, stop)
     return to if largest_excess(m, i, t, to) <= 0.0 else t
 
 
