@@ -11,7 +11,7 @@ import pytest
 import gearidae as gd
 from gearidae.analysis.verdict import outcomes
 from reference.own_pair import OWN_PAIR
-from reference.standing import Plant, judge
+from reference.standing import Plant, free_way, judge
 
 SURFACE = {
     "youngs_modulus": 161e9,
@@ -143,6 +143,31 @@ def test_drawn_runs_are_judged_as_from_samples_alone(seed):
         0.05 if seed % 2 else 0.0,
     )
     assert ("moves" if moves else outcome.verdict) == wanted, json.dumps(scene.to_dict()["drive"])
+
+
+CLOSE_KNOTS = [
+    (0.0, 0.0),
+    (2e-8, 1e-20),
+    (3e-8, 5e-21),
+    (5e-8, 2e-20),
+    (2.0, 4.8e-18),
+    (2.0001, 3e-18),
+    (5.0, 1.2e-17),
+]
+"""A wiggle and a narrow dip, far faster than anything that moves."""
+
+
+@pytest.mark.parametrize("interpolation", ["linear", "cubic"])
+def test_free_gears_follow_a_schedule_with_close_knots_and_seconds_after_them(interpolation):
+    schedule = {"knots": CLOSE_KNOTS, "interpolation": interpolation}
+    (outcome,) = outcomes(ended(2.4, **{"drive.schedule": schedule}))
+    (angle,) = free_way(
+        Plant.of(PAIR.replace({"drive.schedule": schedule})), outcome.stick_time, np.array([2.4])
+    )
+    assert outcome.verdict == "sticks"
+    assert outcome.free_advance == pytest.approx(angle / (2.0 * math.pi / 54), rel=1e-3)
+    stopped = ended(2.4, **{"drive.schedule": schedule, "run.stop": "sticks"})
+    assert float(stopped.stick_time) == pytest.approx(outcome.stick_time, rel=1e-6)
 
 
 def test_a_gear_that_starts_as_free_gears_do_has_not_stood():

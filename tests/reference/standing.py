@@ -10,8 +10,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
+from scipy.interpolate import PchipInterpolator
 
 Floats = NDArray[np.float64]
+
+
+def scheduled(schedule: Any, t: float) -> float:
+    """Value of a schedule, which holds its first and its last one outside its knots; 0 without knots."""
+    if len(schedule) == 0:
+        return 0.0
+    times, values = np.array(schedule).T
+    if getattr(schedule, "interpolation", "linear") == "cubic":
+        return float(PchipInterpolator(times, values)(np.clip(t, times[0], times[-1])))
+    return float(np.interp(t, times, values))
 
 
 @dataclass(frozen=True)
@@ -37,13 +48,12 @@ class Plant:
             total = shaft.torque + sum(
                 h.amplitude * math.cos(2 * math.pi * h.frequency * t + h.phase) for h in shaft.harmonic
             )
-            knots = np.array(list(shaft.schedule)).reshape(-1, 2)
-            return total + (float(np.interp(t, *knots.T)) if len(knots) else 0.0)
+            return total + scheduled(shaft.schedule, t)
 
-        speeds = np.array(list(d.speed_knots())).reshape(-1, 2)
+        speeds = d.speed_knots()
 
         def drive(t: float, speed: float) -> float:
-            held = d.speed_gain * (float(np.interp(t, *speeds.T)) - speed) if len(speeds) else 0.0
+            held = d.speed_gain * (scheduled(speeds, t) - speed) if len(speeds) else 0.0
             return value(d, t) + held + (law(t, speed) if law else 0.0)
 
         knots = [t for s in (d.schedule, ld.schedule, d.speed_knots()) for t, _ in s]
