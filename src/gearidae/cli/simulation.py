@@ -152,7 +152,7 @@ def sweep_case(
     unfinished = () if (ds["status"] == "finished").all() else runs(ds)
     failed = [(label, run) for label, run in unfinished if run_value(run, "status") != "finished"]
     for label, run in failed:
-        print_error(f"{label_text(label)}: {run_value(run, 'message') or run_value(run, 'status')}")
+        print_error(f"{label_text(ds, label)}: {run_value(run, 'message') or run_value(run, 'status')}")
     print_line(headline(ds))
     return UNFINISHED if failed else DONE
 

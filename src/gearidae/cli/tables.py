@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import xarray as xr
@@ -82,13 +82,9 @@ def name_failures(ds: xr.Dataset) -> int:
     return len(failed)
 
 
-def label_text(label: Mapping[str, Any]) -> str:
-    """Write a run's label as text, ``sam_fraction = 0.5``."""
-    return ", ".join(f"{dim} = {_plain(value)}" for dim, value in label.items())
-
-
-def _plain(value: Any) -> str:
-    return f"{value:g}" if isinstance(value, float) else str(value)
+def label_text(ds: xr.Dataset, label: dict[str, Any]) -> str:
+    """Write a run's label as text, ``sam_fraction = 0.5``, with the units of the sweep."""
+    return ", ".join(f"{dim} = {cell}" for dim, cell in zip(label, label_cells(ds, label), strict=True))
 
 
 def show_validity(rows: Sequence[ValidityRow], *, about: str = "") -> None:

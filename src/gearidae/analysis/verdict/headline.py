@@ -12,6 +12,7 @@ import xarray as xr
 from gearidae.analysis.verdict.codes import STUCK
 from gearidae.analysis.verdict.outcome import GearOutcome, RollerOutcome, outcomes
 from gearidae.archive.select import swept_dims
+from gearidae.archive.value_text import label_cells
 
 
 def headline(ds: xr.Dataset) -> str:
@@ -44,7 +45,8 @@ def _limit(ds: xr.Dataset, subject: str, judged: Sequence[GearOutcome | RollerOu
     changes = [k for k, (before, after) in enumerate(pairwise(stuck)) if before != after]
     if len(changes) != 1:
         return ""
-    low, high = (f"{values[order[k]]:g}" for k in (changes[0], changes[0] + 1))
+    edge = [{dims[0]: values[order[k]].item()} for k in (changes[0], changes[0] + 1)]
+    low, high = (label_cells(ds, label)[0] for label in edge)
     at, beyond = (
         (f"{low} and below", f"{high} and above") if stuck[0] else (f"{high} and above", f"{low} and below")
     )
