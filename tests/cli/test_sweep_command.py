@@ -151,4 +151,6 @@ def test_the_sentence_of_a_sweep_names_where_the_gear_begins_to_stick():
 def test_the_sentence_of_a_sweep_gives_its_values_with_their_unit():
     scene = LOW.replace({"run.duration": "0.3 s", "coating.sam_fraction": 0.47})
     ds = gd.sweep(scene, {"drive.torque": ["4.5 aN m", "0.3 fN m"]})
-    assert headline(ds).endswith("The gear sticks at torque = 4.5 aN m and below, and not at 300 aN m and above.")
+    assert headline(ds).endswith(
+        "The gear sticks at torque = 4.5 aN m and below, and not at 300 aN m and above."
+    )

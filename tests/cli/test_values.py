@@ -55,6 +55,8 @@ def test_no_key_twice():
         ("0:1:0.3", [0.0, 0.3, 0.6, 0.9]),
         ("1:1:1", [1.0]),
         ("1e-18:3e-18:1e-18", [1e-18, 2e-18, 3e-18]),
+        ("0.1:0.3:0.1 um", ["0.1 um", "0.2 um", "0.3 um"]),
+        ("2 um:1 um:-1 um", ["2 um", "1 um"]),
         ("1,0.5, 0.47", [1, 0.5, 0.47]),
         ("0.2 um,0.1 um", ["0.2 um", "0.1 um"]),
         ("asperity,elastic", ["asperity", "elastic"]),
@@ -92,7 +94,8 @@ def test_ranges_hold_the_decimals_that_were_meant(start, step, steps, digits):
         "0:nan:1",
         "0:inf:1",
         "0:1:1e-9",
-        "1 um:2 um:1 um",
+        "1 um:2 um:1",
+        "1 um:2 um:500 nm",
     ],
 )
 def test_ranges_that_are_none(text):

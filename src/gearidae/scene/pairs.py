@@ -63,8 +63,8 @@ def sweep_values(pairs: Sequence[str]) -> dict[str, list[Any]]:
     Parameters
     ----------
     pairs : sequence of str
-        ``key=start:stop:step`` (both ends included if the steps meet them), ``key=a,b,c``, or ``key=[a, b]``
-        for values that contain commas themselves.
+        ``key=start:stop:step`` (both ends included if the steps meet them; a unit stands behind the step),
+        ``key=a,b,c``, or ``key=[a, b]`` for values that contain commas themselves.
 
     Returns
     -------
@@ -125,17 +125,24 @@ def _listed(key: str, text: str) -> list[Any]:
     return [literal(part.strip()) for part in text.split(",")]
 
 
-def _range(key: str, text: str) -> list[float]:
-    """Evenly spaced numbers, both ends included; in decimals, so that 1:0.4:-0.05 ends at exactly 0.4."""
+def _range(key: str, text: str) -> list[Any]:
+    """Evenly spaced numbers, both ends included; in decimals, so that 1:0.4:-0.05 ends at exactly 0.4.
+
+    A unit stands behind the step, or behind each of the three.
+    """
+    parts = [part.strip().partition(" ") for part in text.split(":")]
+    units = [unit.strip() for _, _, unit in parts]
     try:
-        start, stop, step = (Decimal(part.strip()) for part in text.split(":"))
+        if units[:-1] != [units[-1]] * 2 and any(units[:-1]):
+            raise ValueError
+        start, stop, step = (Decimal(number) for number, _, _ in parts)
         count = int((stop - start) / step) + 1
     except (ValueError, OverflowError, DecimalException):
-        raise SceneError(
-            key, text, "must be start:stop:step, three numbers and a step other than 0"
-        ) from None
+        allowed = "must be start:stop:step with a step other than 0, such as 1:0.4:-0.05 or 4:10:2 aN m"
+        raise SceneError(key, text, allowed) from None
     if (stop - start) * step < 0:
         raise SceneError(key, text, "the step must lead from start to stop")
     if count > _LONGEST_RANGE:
         raise SceneError(key, text, f"has {count} values, more than {_LONGEST_RANGE}")
-    return [float(start + number * step) for number in range(count)]
+    values = [start + number * step for number in range(count)]
+    return [f"{value} {units[-1]}" for value in values] if units[-1] else [float(value) for value in values]
