@@ -26,7 +26,8 @@ from gearidae.engine.observers.friction_losses import note_friction
 from gearidae.engine.setup.build import make_problem
 from gearidae.mesh.involute import curvature_radii
 from gearidae.records import EventKind
-from gearidae.scene import preset
+from gearidae.scene import Scene, preset
+from reference.own_pair import OWN_PAIR
 from reference.population import NUMBERS, Contact
 
 HIGH = preset("teodorescu2009")
@@ -515,6 +516,28 @@ def test_a_pinion_that_starts_alone_is_not_brought_back_to_rest():
     mass = scene.gears.pinion_inertia / R1**2 + scene.gears.gear_inertia / R2**2
     speed = scene.drive.torque / R1 * 1e-3 / mass
     assert solution.samples["gear_speed"][-1] * R2 == pytest.approx(speed, rel=1e-4, abs=0)
+
+
+@pytest.mark.parametrize("share", [1.0, 1e-4, 1e-6])
+def test_gears_that_ring_as_one_turn_round_without_a_slip_of_the_flank_that_holds_them(share):
+    """While a flank holds, both gears stop in the same moment; forces beside their torques do not change that.
+
+    The forces are 1e7 to 1e13 times the torques, so that the speeds at such a moment are known to few digits.
+    """
+    changes = {
+        "contact.friction": 0.2,
+        "contact.roughness": "discrete",
+        "coating.sam_fraction": 0.0,
+        "load.torque": 3e-18 * share,
+        "initial.gap": 14.5e-9,
+        "initial.mesh_phase": 0.149,
+    }
+    torque = {"drive": {"torque": 1e-17 * share}}
+    pair = HIGH.to_dict() | OWN_PAIR | torque | {"run": {"duration": 2e-6, "samples": "off"}}
+    solution = run(Scene.from_dict(pair).replace(changes))
+    assert solution.status == "finished"
+    assert kinds(solution) == [EventKind.SLIDING_REVERSAL] * 3 + [EventKind.FLANK_STICK]
+    assert abs(solution.balance.residual) < solution.balance.bound(1e-6, roller=False)
 
 
 # -- properties ------------------------------------------------------------------------------------------------------

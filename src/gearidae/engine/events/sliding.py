@@ -34,6 +34,8 @@ STILL: Final = 1e-10
 """Speed over sigma/tau by which sliding reverses before that counts, so that an element just let go waits for it."""
 AT_ONCE: Final = 1e-7
 """Speed of both gears over sigma/tau below which an element that comes to rest brings both to rest, if they stay."""
+ACROSS: Final = 1e-3
+"""Sine of the angle between the levers of two elements, above which they do not rub at the same speeds of the gears."""
 A_WHILE: Final = 1e3
 """Time over tau, long beside a vibration, for which friction must hold gears that creep, so that they come to rest."""
 REVERSALS_HIGH: Final = 100_000
@@ -261,6 +263,9 @@ def _decide(m: Model, t: float, y: Floats, kind: int, history: int) -> None:
     turn -= a1 * first * excess
     w = y[W] - a2 * second * excess
     let_go = state.hold == kind and state.held_pair == history  # what moves has directions already
+    if state.hold != FREE and not let_go and _holds_both(m, first, second):
+        _decide_at_rest(m, t, y)
+        return
     fastest = max(abs(turn), abs(w))
     stops = not let_go and fastest <= AT_ONCE
     if stops and (fastest == 0.0 or state.hold != FREE or _rests(m, t, y)):
@@ -272,6 +277,14 @@ def _decide(m: Model, t: float, y: Floats, kind: int, history: int) -> None:
     state.hold, state.held_pair = kind, history
     _set_slip(m, kind, history, 0.0)
     _let_go(m, t, y)
+
+
+@compiled
+def _holds_both(m: Model, first: float, second: float) -> bool:
+    """Whether an element with these levers and the one that is held stop both gears, whose speeds are then errors."""
+    held_first, held_second = _levers_of(m, m.state.hold, m.state.held_pair)
+    across = abs(first * held_second - second * held_first)
+    return bool(across > ACROSS * math.hypot(first, second) * math.hypot(held_first, held_second))
 
 
 @compiled
