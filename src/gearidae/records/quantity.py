@@ -172,8 +172,11 @@ def in_si(quantities: Iterable[Quantity], record: Any, scene: Any) -> dict[str, 
         The second holds the units, as for `Unit.in_si`.
     """
     numbers: dict[str, Any] = {}
+    factors: dict[Unit, float] = {}  # dozens of quantities have one of a few units
     for quantity in quantities:
-        unit = quantity.unit.in_si(scene)
+        if quantity.unit not in factors:
+            factors[quantity.unit] = quantity.unit.in_si(scene)
+        unit = factors[quantity.unit]
         for name, value in zip(quantity.names, np.ravel(record[quantity.name]).tolist(), strict=True):
             # the same object for each missing number, so that equal numbers compare equal
             numbers[name] = value if quantity.kind == INT else math.nan if math.isnan(value) else unit * value
