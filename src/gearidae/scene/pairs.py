@@ -133,7 +133,7 @@ def _range(key: str, text: str) -> list[Any]:
     parts = [part.strip().partition(" ") for part in text.split(":")]
     units = [unit.strip() for _, _, unit in parts]
     try:
-        if units[:-1] != [units[-1]] * 2 and any(units[:-1]):
+        if set(units[:-1]) not in ({""}, {units[-1]}):
             raise ValueError
         start, stop, step = (Decimal(number) for number, _, _ in parts)
         count = int((stop - start) / step) + 1

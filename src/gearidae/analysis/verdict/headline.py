@@ -45,8 +45,7 @@ def _limit(ds: xr.Dataset, subject: str, judged: Sequence[GearOutcome | RollerOu
     changes = [k for k, (before, after) in enumerate(pairwise(stuck)) if before != after]
     if len(changes) != 1:
         return ""
-    edge = [{dims[0]: values[order[k]].item()} for k in (changes[0], changes[0] + 1)]
-    low, high = (label_cells(ds, label)[0] for label in edge)
+    low, high = (label_cells(ds, judged[order[k]].label)[0] for k in (changes[0], changes[0] + 1))
     at, beyond = (
         (f"{low} and below", f"{high} and above") if stuck[0] else (f"{high} and above", f"{low} and below")
     )

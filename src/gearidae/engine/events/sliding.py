@@ -35,7 +35,7 @@ STILL: Final = 1e-10
 AT_ONCE: Final = 1e-7
 """Speed of both gears over sigma/tau below which an element that comes to rest brings both to rest, if they stay."""
 ACROSS: Final = 1e-3
-"""Sine of the angle between the levers of two elements, above which they do not rub at the same speeds of the gears."""
+"""Sine of the angle between the levers of two elements, above which both gears stand where both elements rest."""
 A_WHILE: Final = 1e3
 """Time over tau, long beside a vibration, for which friction must hold gears that creep, so that they come to rest."""
 REVERSALS_HIGH: Final = 100_000
@@ -281,7 +281,7 @@ def _decide(m: Model, t: float, y: Floats, kind: int, history: int) -> None:
 
 @compiled
 def _holds_both(m: Model, first: float, second: float) -> bool:
-    """Whether an element with these levers and the one that is held stop both gears, whose speeds are then errors."""
+    """Whether both gears stand where an element with these levers is at rest, too: their speeds are then errors."""
     held_first, held_second = _levers_of(m, m.state.hold, m.state.held_pair)
     across = abs(first * held_second - second * held_first)
     return bool(across > ACROSS * math.hypot(first, second) * math.hypot(held_first, held_second))
