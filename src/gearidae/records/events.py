@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from enum import IntEnum
+from enum import IntEnum, unique
 from typing import ClassVar, Final
 
 import numpy as np
@@ -12,6 +12,7 @@ import numpy as np
 from gearidae.records.rows import FLAG, RowColumn, Rows, places
 
 
+@unique
 class EventKind(IntEnum):
     """Kind of an event, as stored in ``event_kind``."""
 
