@@ -16,6 +16,12 @@ SCHEMA = Scene.json_schema()
 
 
 def resolve(node):
+    """The schema of a node; of a table that may be named instead, that of the table."""
+    node = (
+        next((branch for branch in node.get("anyOf", []) if "$ref" in branch), node)
+        if "$ref" not in node
+        else node
+    )
     return SCHEMA["$defs"][node["$ref"].rpartition("/")[2]] if "$ref" in node else node
 
 

@@ -272,6 +272,15 @@ def assess(
 
 
 @app.command
+def surfaces() -> int:
+    """List the surfaces that a case may name (surface = "polysilicon, OTS"), each number with its source."""
+    from gearidae.cli.surface_table import show_library
+
+    show_library()
+    return 0
+
+
+@app.command
 def surface(
     scan: Annotated[
         Path, Parameter(help="Height map: .npy, .csv, .txt, or a format that SurfaceTopography reads.")

@@ -30,6 +30,24 @@ _HEADINGS = (
 )
 
 
+def show_library() -> None:
+    """Print the library of named surfaces: a row a number, with its source."""
+    from gearidae.surfaces import library
+
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
+    for heading in ("name", "key", "value", "source"):
+        table.add_column(heading, no_wrap=heading != "source")
+    before = ""
+    for (name, key), row in library().iterrows():
+        source = f"assumed: {row['source']}" if row["assumed"] else row["source"]
+        table.add_row("" if name == before else name, key, with_prefix(row["value"], row["unit"]), source)
+        before = name
+    show(table)
+    print_line(
+        'surface = "polysilicon, OTS" in a case file takes a solid and a monolayer; friction is not set by a name.'
+    )
+
+
 def show_surface(surface: MeasuredSurface) -> None:
     """Print asperities by summits and by moments for some cut-off wavelengths, and the remarks.
 

@@ -30,6 +30,7 @@ from gearidae.scene.schema import json_schema
 from gearidae.scene.showing import as_html, as_line
 from gearidae.scene.strip import check_population
 from gearidae.scene.surface import Contact, Surface
+from gearidae.scene.surface_library import library_changes, with_library
 from gearidae.scene.torque import Drive, Load
 
 _GEAR_TABLES = ("gears", "mesh", "drive", "load", "initial")
@@ -112,6 +113,12 @@ class Scene(Group):
             return {**data, "load": Load()}
         return data
 
+    @model_validator(mode="before")
+    @classmethod
+    def _named_surface(cls, data: Any) -> Any:
+        """Write out a surface that is named, ``surface = "polysilicon, OTS"``."""
+        return with_library(data) if isinstance(data, dict) else data
+
     @model_validator(mode="after")
     def _whole(self) -> Self:
         """Check what no table can check alone."""
@@ -187,7 +194,8 @@ class Scene(Group):
         changes : mapping of str to object
             Dotted keys (``"coating.sam_fraction"``, ``"drive.harmonic.0.amplitude"``) or names of whole
             tables (None takes a table away) and what to put there, as in a case file. None or an empty list takes
-            a schedule, harmonics or static errors away.
+            a schedule, harmonics or static errors away. A named surface
+            (``{"surface": "polysilicon, OTS"}``) brings energy and thickness of its monolayer; the coverage stays.
 
         Returns
         -------
@@ -200,6 +208,8 @@ class Scene(Group):
         """
         if not isinstance(changes, Mapping):
             raise SceneError("replace", shorten(changes), "must be a mapping from dotted keys to values")
+        if isinstance(name := changes.get("surface"), str):
+            changes = library_changes(name) | {key: changes[key] for key in changes if key != "surface"}
         for key, others in INSTEAD.items():
             for other in others:
                 if changes.get(key) is not None and other in changes:

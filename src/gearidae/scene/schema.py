@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic.json_schema import GenerateJsonSchema
 
+from gearidae.scene.surface_library import COATINGS, SOLIDS
+
 if TYPE_CHECKING:
     from gearidae.scene.scene import Scene
 
@@ -37,6 +39,7 @@ def json_schema(model: type[Scene]) -> dict[str, Any]:
     """
     schema = model.model_json_schema(schema_generator=_Schema)
     _walk(schema)
+    schema["properties"]["surface"] = {"anyOf": [schema["properties"]["surface"], _named_surfaces()]}
     schema["properties"]["$schema"] = {"type": "string", "description": "where this schema is"}
     return {
         "$schema": DIALECT,
@@ -51,6 +54,11 @@ def json_schema(model: type[Scene]) -> dict[str, Any]:
             },
         ],
     }
+
+
+def _named_surfaces() -> dict[str, Any]:
+    names = [f"{solid}{coating}" for solid in SOLIDS for coating in ("", *(f", {name}" for name in COATINGS))]
+    return {"type": "string", "examples": names, "description": "a surface of the library, by its name"}
 
 
 def _walk(schema: Any) -> None:

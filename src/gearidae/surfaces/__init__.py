@@ -1,4 +1,4 @@
-"""Surfaces that were measured: from a map of heights to the three numbers of the rough contact.
+"""Surfaces: from a measured map of heights to the three numbers of the rough contact; the library of named ones.
 
 Reads height maps and scenes' keys; needs neither the contact laws nor the solver.
 """
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from gearidae.surfaces.measured import surface_from as surface_from
     from gearidae.surfaces.moments import Asperities as Asperities
     from gearidae.surfaces.moments import from_moments as from_moments
+    from gearidae.surfaces.named import library as library
     from gearidae.surfaces.synthetic import gaussian_map as gaussian_map
 
 __getattr__, __dir__, __all__ = lazy_names(__name__)
