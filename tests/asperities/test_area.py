@@ -116,7 +116,7 @@ def test_laws_without_an_area_are_refused_by_name():
 
     try:
         assert not has_area("block")
-        with pytest.raises(gd.SceneError, match="must be one of dmt, hertz, jkr, maugis") as error:
+        with pytest.raises(gd.SceneError, match="must be one of dmt, hertz, jkr, maugis, meniscus") as error:
             HIGH.replace(SHEAR | {"contact.asperity": "block"})
         assert error.value.key == "contact.friction_law"
         with pytest.raises(NotImplementedError, match="block has no contact area"):

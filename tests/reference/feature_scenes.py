@@ -56,6 +56,11 @@ CHANGES = {
     },
     "dry resistance": {"load.torque": 3e-11},
     "maugis asperities": {"contact.asperity": "maugis"},
+    "meniscus asperities": {
+        "contact.asperity": "meniscus",
+        "surface.humidity": 0.8,
+        "surface.bridged": 0.5,
+    },
     "independent coatings": {"coating.pairing": "independent", "coating.thickness": "1 nm"},
     "coating by place": {"coating.pinion_table": np.array(_TABLE)},
     "radius force": {"mesh.radius_force": True},

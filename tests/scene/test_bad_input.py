@@ -89,7 +89,7 @@ WRONG = [
     ("run.samples", 10**12, "must be a whole number in 2.."),
     # choices and names
     ("contact.bodies", "elastc", "must be 'auto', 'rigid' or 'elastic'"),
-    ("contact.asperity", 5, "must be one of dmt, hertz, jkr, maugis"),
+    ("contact.asperity", 5, "must be one of dmt, hertz, jkr, maugis, meniscus"),
     ("name", 5, "must be a printable line"),
     ("name", "two\nlines", "must be a printable line"),
     ("name", " ", "must be a printable line"),

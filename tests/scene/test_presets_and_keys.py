@@ -18,9 +18,9 @@ CONTRACT = {
     "mesh": "backlash tip_relief_radius radius_force damping film_damping film_gap static_error static_error.order "
     "static_error.amplitude static_error.phase",
     "surface": "youngs_modulus poisson_ratio energy asperity_density asperity_radius roughness interaction_range "
-    "hamaker provenance",
+    "hamaker provenance humidity contact_angle bridged temperature",
     "coating": "sam_fraction energy hamaker pairing thickness pinion_fraction gear_fraction pinion_table gear_table "
-    "friction shear_strength",
+    "friction shear_strength contact_angle",
     "drive": "torque harmonic schedule harmonic.amplitude harmonic.frequency harmonic.order harmonic.phase law "
     "law.name law.parameters orientation pin_friction pin_radius speed speed_gain",
     "load": "torque harmonic drag viscous schedule harmonic.amplitude harmonic.frequency harmonic.order "

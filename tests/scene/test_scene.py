@@ -205,9 +205,10 @@ def test_replace_leaves_what_it_was_given_alone(gears: Scene) -> None:
     assert drive == {"torque": 1e-11, "harmonic": [{"amplitude": 1e-12, "frequency": 1.0}]}
 
 
-def test_coated_surface_differs_in_energy_alone(gears: Scene) -> None:
+def test_coated_surface_differs_in_energy_and_contact_angle_alone(gears: Scene) -> None:
     coated, bare = gears.coated_surface.model_dump(), gears.surface.model_dump()
     assert (coated.pop("energy"), bare.pop("energy")) == (0.1, 1.5)
+    assert (coated.pop("contact_angle"), bare.pop("contact_angle")) == (math.radians(110.0), 0.0)
     assert coated == bare
 
 

@@ -34,6 +34,9 @@ class AsperityLaw(ABC):
     name: ClassVar[str]
     """Name of the law in ``contact.asperity``."""
 
+    needs: ClassVar[tuple[str, ...]] = ()
+    """Keys of the table ``surface`` that this law needs, and without which they have no effect."""
+
     @classmethod
     @abstractmethod
     def of(cls, tip: Asperity, unit: float) -> AsperityLaw:

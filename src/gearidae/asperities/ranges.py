@@ -18,8 +18,8 @@ GAP_HIGH: Final = 13.0
 STRETCH_HIGH: Final = 128.0
 """Largest stretch limit a law is made for, in roughnesses."""
 
-JOIN_HIGH: Final = 1.0
-"""Largest distance of joining, in roughnesses, for which the tables keep their stated error."""
+JOIN_HIGH: Final = 4.0
+"""Largest distance of joining, in roughnesses: what joins at the widest gap of the tables has 1e-18 of their scale."""
 
 
 def check_reach(law: AsperityLaw, roughness: float) -> None:

@@ -83,6 +83,22 @@ def has_area(name: str) -> bool:
     return _LAWS.find(name).area is not AsperityLaw.area
 
 
+def law_needs(name: str) -> tuple[str, ...]:
+    """Return the keys of the table ``surface`` that a law needs.
+
+    Parameters
+    ----------
+    name : str
+        The law's name.
+
+    Raises
+    ------
+    SceneError
+        If there is no such law.
+    """
+    return _LAWS.find(name).needs
+
+
 def law_of_tip(name: str, tip: Asperity, unit: float) -> AsperityLaw:
     """Return a law for one tip, in a unit of length.
 

@@ -9,8 +9,8 @@ doi:10.1016/j.triboint.2008.05.019.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Final, Literal, Protocol
+from dataclasses import dataclass, field, replace
+from typing import Any, Final, Literal, Protocol
 
 INTERACTION_RANGE: Final = 0.165e-9
 """Range of adhesive forces between silicon surfaces [m], for a surface without an ``interaction_range``."""
@@ -63,6 +63,8 @@ class Asperity:
         adhesion deforms a tip, under any law.
     interaction_range : float, optional
         Range eps of the adhesive forces, the equilibrium spacing of two atoms [m]; for laws that have one.
+    surface : Surface, optional
+        Surface that it belongs to, with all of its keys, for laws with keys of their own; None of a tip without one.
     """
 
     modulus: float
@@ -71,6 +73,7 @@ class Asperity:
     pull_off: float
     stretch_limit: float
     interaction_range: float = INTERACTION_RANGE
+    surface: Any = field(default=None, compare=False, repr=False)
 
     @property
     def hertz_factor(self) -> float:
@@ -114,7 +117,8 @@ def asperity_of(surface: Surface, radius: float | None = None) -> Asperity:
     modulus = contact_modulus(surface.youngs_modulus, surface.poisson_ratio)
     adhesion = 2.0 * surface.energy
     reach = getattr(surface, "interaction_range", INTERACTION_RANGE)
-    return make_tip(modulus, surface.asperity_radius if radius is None else radius, adhesion, reach)
+    tip = make_tip(modulus, surface.asperity_radius if radius is None else radius, adhesion, reach)
+    return replace(tip, surface=surface)
 
 
 def make_tip(

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from gearidae.asperities import law_of
+from gearidae.asperities.meniscus import meniscus_reach
 from gearidae.asperities.tip import tabor_parameter
 from gearidae.contact.asperity_statistics import (
     asperities_for_mean,
@@ -122,7 +123,13 @@ def _rows(scene: GearScene) -> tuple[ValidityRow, ...]:
     rest = rest_of(scene)
     stiffness = math.nan if math.isnan(rest.gap) else rest.contact.stiffness(rest.gap)
     real = scene.contact.is_discrete
-    rows = [_asperities(rest, real), _density(rest.contact), *_merging(scene), *_tabor(scene)]
+    rows = [
+        _asperities(rest, real),
+        _density(rest.contact),
+        *_merging(scene),
+        *_menisci(scene, rest),
+        *_tabor(scene),
+    ]
     rows += [_temperature(rest, stiffness), _gas(rest, stiffness), _adhesion(scene, rest)]
     rows += [_attraction(scene, rest, rest.gap, "attraction", "attraction across the gap")]
     if scene.gears is not None:
@@ -244,6 +251,34 @@ def _merging(scene: Scene) -> Iterator[ValidityRow]:
         limit = f"{with_prefix(half, 'm')}, half the mean spacing"
         quantity = f"{name}: contact radius without load"
         yield _row(f"merging_{name}", quantity, radius, "m", limit, half, holds, verdict)
+
+
+def _menisci(scene: Scene, rest: Rest) -> Iterator[ValidityRow]:
+    """Menisci within the wetted circle of another: where they merge, no law of one asperity holds."""
+    for surface, _, _, name in scene.materials():
+        reach = meniscus_reach(surface)
+        if reach == 0.0:
+            continue
+        # the neck of a meniscus around a tip that touches meets the plane where the sphere is its reach away
+        area = 2.0 * math.pi * surface.asperity_radius * reach
+        share = 0.5 * math.erfc((rest.gap - reach) / (math.sqrt(2.0) * surface.roughness))
+        number = surface.asperity_density * area * share
+        holds = number <= 1.0
+        verdict = (
+            "menisci stay apart"
+            if holds
+            else "menisci merge: the pull is that of a film, not of single asperities"
+        )
+        yield _row(
+            f"menisci_{name}",
+            f"{name}: menisci within the circle of one",
+            number,
+            "1",
+            "1",
+            1.0,
+            holds,
+            verdict,
+        )
 
 
 def _tabor(scene: Scene) -> Iterator[ValidityRow]:

@@ -32,7 +32,7 @@ from gearidae.errors import SceneError
 from gearidae.scene.coating_table import FractionTable, path_means
 from gearidae.scene.group import Group, shorten
 from gearidae.scene.quantity import Quantity
-from gearidae.scene.surface import Energy, Hamaker, OptionalFriction, OptionalStrength, Surface
+from gearidae.scene.surface import ContactAngle, Energy, Hamaker, OptionalFriction, OptionalStrength, Surface
 
 MATERIAL_NAMES: Final = ("bare", "coated", "mixed")
 """Names of the materials that an interface may have, in the order of `Scene.materials`."""
@@ -74,6 +74,10 @@ class Coating(Group):
     energy: Energy = Field(default=0.1, description="surface energy where the monolayer covers the flank")
     hamaker: Hamaker = Field(
         default=0.0, description="Hamaker constant where the monolayer covers both flanks, at their own gap"
+    )
+    contact_angle: Annotated[float, ContactAngle] = Field(
+        default=math.radians(110.0),
+        description="contact angle of water on the monolayer; for meniscus asperities",
     )
     pairing: Literal["patches", "independent"] = Field(
         default="patches",
@@ -191,8 +195,16 @@ def materials_of(coating: Coating, surface: Surface) -> tuple[Material, ...]:
         tooth and place are means over all teeth that meet and along the path of contact.
     """
     constants = {
-        "coated": {"energy": coating.energy, "hamaker": coating.hamaker},
+        "coated": {
+            "energy": coating.energy,
+            "hamaker": coating.hamaker,
+            "contact_angle": coating.contact_angle,
+        },
         "mixed": {
+            # a meniscus between unlike surfaces is drawn by the mean of their cosines
+            "contact_angle": math.acos(
+                0.5 * (math.cos(coating.contact_angle) + math.cos(surface.contact_angle))
+            ),
             "energy": math.sqrt(coating.energy * surface.energy),
             "hamaker": math.sqrt(coating.hamaker * surface.hamaker),
         },

@@ -57,6 +57,7 @@ FEATURES: Final = {
     ),
     "dry resistance": Feature("load.torque", lambda scene: scene.load is not None and scene.load.is_dry),
     "maugis asperities": Feature("contact.asperity", lambda scene: scene.contact.asperity == "maugis"),
+    "meniscus asperities": Feature("contact.asperity", lambda scene: scene.contact.asperity == "meniscus"),
     "independent coatings": Feature("coating.pairing", lambda scene: scene.coating.pairing == "independent"),
     "coating by place": Feature("coating.pinion_table", lambda scene: scene.coating.by_place),
     "radius force": Feature(
@@ -85,6 +86,13 @@ REFUSED: Final = {
         "attraction acts across the whole gap and would deflect the bodies outside the contacts, where no deflection is"
         " solved for"
     ),
+    (ELASTIC, "meniscus asperities"): (
+        "menisci pull across the gap and would deflect the bodies outside the contacts, where no deflection is"
+        " solved for"
+    ),
+    ("attraction", "meniscus asperities"): (
+        "the water would attract twice: what a Hamaker constant pulls across the gap is part of the pull of a meniscus"
+    ),
     (ELASTIC, "shear friction"): (
         "the traction of a shear strength on asperities that hardly press would deflect the bodies along the flank, and"
         " deflections are solved for along the normal only"
@@ -92,7 +100,7 @@ REFUSED: Final = {
 }
 """Pairs of features that no scene can have, each with its reason."""
 
-_ONE_KEY: Final = {("coulomb friction", "shear friction")}
+_ONE_KEY: Final = {("coulomb friction", "shear friction"), ("maugis asperities", "meniscus asperities")}
 """Features that are two values of one key."""
 
 
@@ -154,7 +162,7 @@ def combinations() -> pd.DataFrame:
     >>> import gearidae as gd
     >>> table = gd.combinations()
     >>> int((~table.allowed).sum())
-    3
+    5
     """
     import pandas as pd
 

@@ -119,7 +119,7 @@ def put(model: type[Group], data: dict[str, Any], key: str, value: object) -> No
     SceneError
         If there is no such key, or the scene lacks the table it belongs to.
     """
-    value = value.plain_tables() if isinstance(value, Group) else value
+    value = value.plain_tables(exclude_none=True) if isinstance(value, Group) else value
     if isinstance(key, str) and key in model.model_fields:
         try:  # dotted keys may change a table later
             data[key] = deepcopy(value) if isinstance(value, dict) else value

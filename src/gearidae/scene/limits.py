@@ -6,7 +6,7 @@ import math
 import sys
 from typing import TYPE_CHECKING, Final
 
-from gearidae.asperities import law_of
+from gearidae.asperities import law_names, law_needs, law_of
 from gearidae.asperities.ranges import GAP_LOW
 from gearidae.asperities.ranges import check_reach as check_asperity_reach
 from gearidae.errors import SceneError
@@ -24,11 +24,20 @@ WIDEST_BACKLASH: Final = 1e9
 def check_stretch(scene: Scene) -> None:
     """Refuse asperities that stretch farther, or join from farther, than the force law is tabulated.
 
+    Keys that one law alone needs are required with it, and refused without, where they would have no effect.
+
     Raises
     ------
     SceneError
-        Naming ``surface.roughness``.
+        Naming ``surface.roughness``, or the key.
     """
+    name = scene.contact.asperity
+    for key in sorted({key for law in law_names() for key in law_needs(law)}):
+        value, needed = getattr(scene.surface, key, None), key in law_needs(name)
+        if value is None and needed:
+            raise SceneError(f"surface.{key}", "(missing)", f'is required with contact.asperity = "{name}"')
+        if value is not None and not needed:
+            raise SceneError(f"surface.{key}", value, f'has no effect with contact.asperity = "{name}"')
     for material in scene.materials():
         if material.share > 0.0:
             surface = material.surface

@@ -165,10 +165,9 @@ class Scene(Group):
 
     @property
     def coated_surface(self) -> Surface:
-        """The surface where the monolayer covers it: the same, with the coating's energy and Hamaker constant."""
-        return self.surface.model_copy(
-            update={"energy": self.coating.energy, "hamaker": self.coating.hamaker}
-        )
+        """The surface where the monolayer covers it: with the coating's energy, Hamaker constant and contact angle."""
+        own = ("energy", "hamaker", "contact_angle")
+        return self.surface.model_copy(update={key: getattr(self.coating, key) for key in own})
 
     @property
     def attracts(self) -> bool:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+import math
+from typing import Annotated, Any, Final, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
@@ -17,6 +18,7 @@ from gearidae.scene.quantity import Count, Quantity
 _LONGEST_LINE = 300
 Energy = Annotated[float, Quantity(unit="J/m^2", at_least=0, at_most=100, least=1e-15)]
 Hamaker = Annotated[float, Quantity(unit="J", at_least=0, at_most=1e-17, least=1e-25)]
+ContactAngle: Final = Quantity(unit="rad", at_least=0, at_most=math.pi)
 _FRICTION = Quantity(unit="1", at_least=0, at_most=2, least=1e-6)
 _STRENGTH = Quantity(unit="Pa", at_least=0, at_most=1e12, least=1.0, shown=("MPa", 6))
 Friction = Annotated[float, _FRICTION]
@@ -57,6 +59,20 @@ class Surface(Group):
     hamaker: Hamaker = Field(
         default=0.0,
         description="Hamaker constant of bare flanks, which then attract each other across the gap; bodies stay rigid",
+    )
+    humidity: Annotated[float | None, Quantity(unit="1", at_least=0.01, at_most=0.99)] = Field(
+        default=None, description="relative humidity of the air, h; for meniscus asperities"
+    )
+    contact_angle: Annotated[float, ContactAngle] = Field(
+        default=0.0,
+        description="contact angle of water on the bare flank, which is dry from 90 deg on; for meniscus asperities",
+    )
+    bridged: Annotated[float, Quantity(unit="1", at_least=0, at_most=1)] = Field(
+        default=1.0,
+        description="distance at which a meniscus forms over that at which it breaks; for meniscus asperities",
+    )
+    temperature: Annotated[float, Quantity(unit="K", at_least=200, at_most=650)] = Field(
+        default=298.15, description="temperature of the air; for meniscus asperities"
     )
     provenance: Annotated[str, BeforeValidator(_line)] = Field(
         default="",
