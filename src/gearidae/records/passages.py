@@ -22,11 +22,11 @@ EXIT: Final = (
 )
 """Which passage it is."""
 SINCE_LAST: Final = (
-    _force("largest_force", "largest force along the line of action"),
-    _force("smallest_force", "smallest force along the line of action"),
+    _force("largest_force", "largest force along the line of action while this flank is in reach"),
+    _force("smallest_force", "smallest force along the line of action while this flank is in reach"),
     count(
         "impacts",
-        "contacts made (onset events)",
+        "contacts made on this flank (onset events)",
         comment="since the mesh exit before on the same flank, or the start",
     ),
 )

@@ -29,7 +29,7 @@ def log_imbalance(ds: xr.Dataset) -> None:
         if out_by > 1.0:
             log.warning(
                 "the energy balance of this run is out by %.2g times its bound: "
-                "do not rely on it, repeat it with a smaller run.rtol",
+                "do not rely on it; if a smaller run.rtol does not bring it within, report the scene",
                 out_by,
             )
         return
@@ -39,7 +39,7 @@ def log_imbalance(ds: xr.Dataset) -> None:
     if out.any():
         log.warning(
             "the energy balance of %d of %d runs is out of its bound: "
-            "do not rely on them, repeat them with a smaller run.rtol",
+            "do not rely on them; if a smaller run.rtol does not bring them within, report the scene",
             out.sum(),
             out.size,
         )

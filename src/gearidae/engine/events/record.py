@@ -57,11 +57,10 @@ def record(
 def record_contact(
     m: Model, y: Floats, events: Floats, count: int, what: tuple[float, float, int, int, float]
 ) -> int:
-    """Write an onset or a separation likewise, with the force of the pair at a state; count impacts for passages."""
+    """Write an onset or a separation likewise, with the force of the pair at a state; count impacts of its flank."""
     t, kind, pair, flank, rate = what
     if kind == _ONSET:
-        for side in range(2):
-            m.state.passage[side].impacts += 1
+        m.state.passage[flank].impacts += 1
     after = record(m, events, count, t, kind, pair, flank, rate)
     if after > count:
         events[count, _FORCE] = force_of_one(m, t, y, flank, pair) * m.scene.force_unit

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.events.asperity_events import record_switches, switch_asperities
-from gearidae.engine.events.events import ROOT, STOP, chatters, handle_mesh
+from gearidae.engine.events.events import ROOT, STOP, chatters, guard, handle_mesh
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.pair_events import find_event, take_event
 from gearidae.engine.events.record import EVENTS_AT_ONCE
@@ -27,6 +29,9 @@ from gearidae.engine.model.state import PHASE, Floats, Model
 from gearidae.engine.observers import dispatch as observers
 from gearidae.engine.observers.passages import PASSAGES_AT_ONCE, write_passages
 from gearidae.engine.pairs.tooth_pairs import flank_of_history, in_flight, list_known
+
+_FALLEN_AT_ONCE: Final = 4
+"""Times that guards are looked at again after an event; one suffices but where the new speeds turn a gap round, too."""
 
 
 @compiled
@@ -70,6 +75,13 @@ def finish_step(
     afresh = change_wanted(m, y, yp) or comes_to_rest(m, t, y) or abs(y[PHASE]) > PHASE_HIGH
     if flag == ROOT:
         afresh |= handle(m, t, y, yp, out)
+        # What has been dealt with may let another guard fall at the same time: the speed of a gear that comes to rest
+        # is set to zero, which may turn a gap round. Below zero at the beginning of a step such a guard would wait for
+        # ever, and as the least of all hide every later event.
+        for _ in range(_FALLEN_AT_ONCE):
+            if driver.done != 0 or driver.error != 0 or guard(m, t, y) > 0.0:
+                break
+            afresh |= handle(m, t, y, yp, out)
         if m.scene.stop != 0 and stop_guard(m, t, y) <= 0.0:
             driver.done = 1
         if m.state.rigid_again != 0 and driver.done == 0 and driver.error == 0:

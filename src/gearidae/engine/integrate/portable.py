@@ -273,7 +273,10 @@ class _Solver:
             # drop the history, which would be copied whole at every further step
             for name in ("_i", "_t", "_y", "_yp"):
                 self._history[name].clear()
-        return flag if flag in (STOP, ROOT) else 0, result.y, result.yp
+        if flag not in (STOP, ROOT):
+            unseen = guard_at(self.addresses.place, result.t, result.y.copy()) < 0.0
+            flag = ROOT if unseen else 0  # below zero for the whole step: IDA looks for changes of sign only
+        return flag, result.y, result.yp
 
     def count(self) -> None:
         """Add what this solver's counters have gained."""

@@ -151,8 +151,13 @@ def next_time(s: Stepper) -> int:
         if s.m.scene.population.flanks != 0:
             _find_dips(s)
         return sun.IDA_ROOT_RETURN
+    unseen = search.low <= 0.0 and high < 0.0
     _begin_interval(s, high)
     search.rest = 0
+    if (
+        unseen
+    ):  # a guard has been below zero for the whole step: it is dealt with here, and hides no other any longer
+        return sun.IDA_ROOT_RETURN
     if search.stop != 0:
         return _stop(s)
     return 0

@@ -243,8 +243,8 @@ def on_path(pair: PairState, place: float, place_rate: float, moves: bool) -> Pa
 
 @compiled(inline=True)
 def acts(m: Model, pair: PairState) -> bool:
-    """Whether a pair may have a force: within the cut-off; with real asperities as long as it has a history."""
-    return bool(pair.known) if m.scene.population.flanks != 0 else bool(pair.gap < m.scene.cutoff)
+    """Whether a pair may have a force: within the cut-off, whatever its history knows of it."""
+    return bool(pair.gap < m.scene.cutoff)
 
 
 @compiled

@@ -121,7 +121,9 @@ def candidate_limit(
 @compiled_once(POPULATION)
 def asperity_force(m: Model, pair: PairState) -> PairForce:
     """Force of a pair's joined asperities, with the limit of their friction, scaled."""
-    if m.work.contact[pair.k].joined == 0:
+    if (
+        not pair.known or m.work.contact[pair.k].joined == 0
+    ):  # what is joined belongs to the pair of the history
         return NO_PAIR_FORCE
     s = _sums(m, pair.k, pair)
     return PairForce(

@@ -10,7 +10,7 @@ from gearidae.engine.model.state import DRIVE, LOAD, SPEED, STOPS, Floats, Recor
 from gearidae.engine.setup.tables import Tables
 from gearidae.engine.torques.harmonic import common_period, pack_harmonics
 from gearidae.engine.torques.law import largest_torque
-from gearidae.engine.torques.schedule import LEAST_CUBIC, fastest_schedule, pack_schedule
+from gearidae.engine.torques.schedule import LEAST_CUBIC, fastest_schedule, pack_schedule, steep_knots
 from gearidae.scene import Drive, GearScene, Knots, Load, Scene
 from gearidae.torques import torque_law
 
@@ -131,8 +131,9 @@ def _add_schedule(s: Record, tables: Tables, which: int, schedule: Knots, unit: 
     cubic = schedule.interpolation == "cubic" and len(schedule) >= LEAST_CUBIC
     record.knot_count, record.cubic = len(schedule), int(cubic)
     record.knots_at = tables.add(pack_schedule(schedule, tau, unit, cubic=cubic))
-    stops = (schedule[0], schedule[-1]) if cubic else schedule
-    return {t / tau for t, _ in stops}
+    if cubic:
+        return {t / tau for t in (schedule[0][0], *steep_knots(schedule), schedule[-1][0])}
+    return {t / tau for t, _ in schedule}
 
 
 def set_run(s: Record, tables: Tables, scene: Scene, knots: set[float], begin: float) -> None:

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
@@ -19,6 +20,8 @@ from gearidae.engine.model.state import SCHEDULES, Floats, Model, Record
 
 LEAST_CUBIC = 3
 """Knots that a cubic takes; two are joined by a straight line."""
+_STOP_STEPS: Final = 40.0
+"""Steps that the stops at both ends of a piece cost; the solver begins anew there."""
 PARTS: Final = 16
 """Of a cubic piece, each of which is nearly straight."""
 
@@ -63,7 +66,8 @@ def segment_ends(schedule: Record, tables: Floats) -> Floats:
 def fastest_schedule(schedule: Record, tables: Floats, felt: float) -> float:
     """Angular frequency of the harmonic that is as steep as a cubic schedule, if it is felt; 0 else.
 
-    Between two knots at which its slope is zero a cubic is steeper than their chord by half.
+    Between two knots at which its slope is zero a cubic is steeper than their chord by half. Pieces between
+    `steep_knots` do not count.
 
     Parameters
     ----------
@@ -77,11 +81,34 @@ def fastest_schedule(schedule: Record, tables: Floats, felt: float) -> float:
     if not schedule.cubic:
         return 0.0
     count, start = int(schedule.knot_count), int(schedule.knots_at)
-    values = tables[start + 1 : start + 2 * count : 2]
-    steepest = 1.5 * np.abs(np.diff(values) / np.diff(tables[start : start + 2 * count : 2])).max()
-    amplitude = 0.5 * float(values.max() - values.min())
-    omega = float(steepest) / amplitude if amplitude > 0.0 else 0.0
+    times, values = tables[start : start + 2 * count : 2], tables[start + 1 : start + 2 * count : 2]
+    amplitude, omegas, steep = _steepness(times, values)
+    omega = float(omegas[~steep].max(initial=0.0))
     return omega if amplitude > felt * omega else 0.0
+
+
+def steep_knots(knots: Sequence[tuple[float, float]]) -> list[float]:
+    """Times of the knots of a cubic schedule between which it is so steep that the solver rather stops at both.
+
+    Steps that are short everywhere would be many for a piece of a nanosecond in a schedule of seconds.
+    """
+    times, values = np.array(knots, np.float64).T
+    steep = _steepness(times, values)[2]
+    return [float(t) for t in times[np.append(steep, False) | np.append(False, steep)]]
+
+
+def _steepness(times: Floats, values: Floats) -> tuple[float, Floats, NDArray[np.bool_]]:
+    """Amplitude of a cubic schedule, angular frequency of a harmonic as steep as each piece, and pieces to stop at."""
+    amplitude = 0.5 * float(values.max() - values.min())
+    if amplitude == 0.0:
+        return 0.0, np.zeros(values.size - 1), np.zeros(values.size - 1, np.bool_)
+    omegas = 1.5 * np.abs(np.diff(values) / np.diff(times)) / amplitude
+    order = np.argsort(-omegas)
+    # steps of a run that stops at the steepest pieces, and is bound by the steepest of the others
+    steps = _STOP_STEPS * np.arange(omegas.size + 1) + (times[-1] - times[0]) * np.append(omegas[order], 0.0)
+    steep = np.zeros(omegas.size, np.bool_)
+    steep[order[: int(np.argmin(steps))]] = True
+    return amplitude, omegas, steep
 
 
 @compiled

@@ -8,12 +8,13 @@ the last mesh exit is far more often passed; there the rates of the step's formu
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
 from gearidae.compiled import compiled
 from gearidae.engine.formulas import adams
 from gearidae.engine.formulas.interpolation import cubic, quintic, vertex
-from gearidae.engine.model.state import COAST, DRIVE, PHASE, Floats, Model, Record, U, V, W
+from gearidae.engine.model.state import DRIVE, PHASE, Floats, Model, Record, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.pairs.tooth_pairs import in_flight, static_error
@@ -177,8 +178,10 @@ def _note_force(m: Model, t: float, force: float) -> None:
 
 @compiled
 def note_since(m: Model, flank: int, force: float) -> None:
-    """Note a force since the last mesh exit of a flank."""
+    """Note a force since the last mesh exit of a flank; one that is out of reach has none."""
     p = m.state.passage[flank]
+    if m.state.flank_in_reach[flank] == 0:
+        force = 0.0
     if p.begun == 0:
         p.begun, p.largest_force, p.smallest_force = 1, force, force
     p.largest_force, p.smallest_force = max(p.largest_force, force), min(p.smallest_force, force)
@@ -189,5 +192,9 @@ def _records(m: Model) -> tuple[float, float]:
     """Largest and smallest force so far: of the run, or since the last mesh exits where these are kept."""
     if m.scene.follow.passages == 0:
         return m.state.extremes.largest_force, m.state.extremes.smallest_force
-    drive, coast = m.state.passage[DRIVE], m.state.passage[COAST]
-    return min(drive.largest_force, coast.largest_force), max(drive.smallest_force, coast.smallest_force)
+    largest, smallest = math.inf, -math.inf
+    for flank in range(FLANKS):
+        if m.state.flank_in_reach[flank] != 0:
+            largest = min(largest, m.state.passage[flank].largest_force)
+            smallest = max(smallest, m.state.passage[flank].smallest_force)
+    return largest, smallest
