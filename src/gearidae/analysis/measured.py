@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 
 from gearidae.analysis.record_columns import Column, Wanted, find_columns, has_columns, numbered_places
+from gearidae.analysis.record_formats import frame_from, unpacked
 from gearidae.analysis.signal import signals, to_si
 from gearidae.archive.library import loaded
 from gearidae.arrays import Floats
@@ -71,7 +72,8 @@ def read_signal(
     signal : path-like or DataFrame
         A text file with a line of headings that name the columns and their units, ``time [s], gear_speed [rad/s]``; a
         table with such columns; or a netCDF file with the variables ``time`` and ``gear_speed`` and their attributes
-        ``units``. In text, the headings may stand below other lines, their units in the line below them, or both in a
+        ``units``. ``.csv.gz``, ``.mat``, ``.npy``, ``.xlsx`` and ``.tdms`` are read, too.
+        In text, the headings may stand below other lines, their units in the line below them, or both in a
         remark (after ``#``) as ``numpy.savetxt`` writes them. Other columns are ignored.
     columns : pair of str, optional
         Headings of time and speed, with the units where the headings have none, or their numbers from 1 with the units
@@ -117,8 +119,12 @@ def read_signal(
         elif not is_text:
             _refuse({**table, "interval": interval}, "a netCDF file")
             ds = _from_netcdf(Path(signal), wanted)
+        elif (frame := frame_from(Path(signal))) is not None:
+            _refuse(table, f"a {Path(signal).suffix} file")
+            ds = _from_frame(frame, wanted, step)
         else:
-            ds = _from_text(Path(signal), wanted, table, step)
+            with unpacked(Path(signal)) as path:
+                ds = _from_text(path, wanted, table, step)
         ds = _bridged(ds, most)
         signals(ds)  # refuses an uneven time and the like while the file can be named
     except SceneError as error:
@@ -165,7 +171,11 @@ def _from_netcdf(source: Path, wanted: Wanted) -> xr.Dataset:
         if asked not in ds.variables:
             raise ValueError(f"lacks the variable {asked}")
         ds = ds if asked == name else ds.rename({asked: name})
-        if "units" not in ds[name].attrs:
+        unit, since, _ = str(ds[name].attrs.get("units", "")).partition(" since ")
+        if since:  # dates count from the first
+            first = ds[name].values.ravel()[0] if ds[name].size else 0
+            ds = ds.assign_coords({name: (ds[name].dims, ds[name].values - first, {"units": unit})})
+        if "units" not in ds[name].attrs and ds[name].dtype.kind not in "mM":
             raise ValueError(f"does not state the units of {name} (attribute units)")
     in_si = {
         name: (
@@ -174,7 +184,7 @@ def _from_netcdf(source: Path, wanted: Wanted) -> xr.Dataset:
             {**ds[name].attrs, "units": units},
         )
         for name, units in _SI.items()
-        if str(ds[name].attrs["units"]) != units
+        if str(ds[name].attrs.get("units", "")) != units
     }
     return ds.assign_coords({"time": in_si.pop("time")} if "time" in in_si else {}).assign(in_si)
 

@@ -10,8 +10,6 @@ from gearidae.scene.units import from_text
 
 _NAMES: Final = {"time": ("time", "t"), "gear_speed": ("gear_speed", "speed")}
 _UNITS: Final = {"time": "s", "gear_speed": "rad/s"}
-_TURNS: Final = ("u/min", "upm", "rev/min", "r/min", "tr/min")
-"""Revolutions per minute as sensors' programs write them."""
 _EXAMPLE: Final = (
     "name them, or their numbers with units (columns=..., --columns '1 [s]' '2 [rad/s]'), or head them such as: "
     "time [s], gear_speed [rad/s]"
@@ -102,11 +100,11 @@ def _given(headings: Sequence[str], meaning: str, name: str) -> Column:
     heading, unit = headings[place] if headings else f"column {place + 1}", split_unit(name)[1]
     heading_unit = split_unit(heading)[1]
     # the unit of a voltage is replaced
-    if heading_unit and unit and heading_unit != unit and _fits(_spelt(heading_unit), _UNITS[meaning]):
+    if heading_unit and unit and heading_unit != unit and _fits(heading_unit, _UNITS[meaning]):
         raise ValueError(f"the column {heading!r} is not in {unit}: leave the unit out")
     if not (unit := unit or heading_unit):
         raise ValueError(f"{name!r} states no unit: give it in brackets, as in {name + ' [ms]'!r}")
-    return Column(meaning, heading, place, _spelt(unit))
+    return Column(meaning, heading, place, unit)
 
 
 def _recognised(headings: Sequence[str], meaning: str) -> Column:
@@ -118,7 +116,7 @@ def _recognised(headings: Sequence[str], meaning: str) -> Column:
         bare, unit = split_unit(headings[named[0]])
         if not unit:
             raise ValueError(f"{bare!r} states no unit; {_EXAMPLE}")
-        return Column(meaning, headings[named[0]], named[0], _spelt(unit))
+        return Column(meaning, headings[named[0]], named[0], unit)
     measured = _measured(headings, meaning)
     if len(measured) != 1:
         among = f"among {listed(headings)}"
@@ -126,9 +124,7 @@ def _recognised(headings: Sequence[str], meaning: str) -> Column:
             f"has no column {meaning} {among}, nor one column alone in {_UNITS[meaning]}; {_EXAMPLE}"
             f"{_UNTIMED if meaning == 'time' else ''}"
         )
-    return Column(
-        meaning, headings[measured[0]], measured[0], _spelt(split_unit(headings[measured[0]])[1]), True
-    )
+    return Column(meaning, headings[measured[0]], measured[0], split_unit(headings[measured[0]])[1], True)
 
 
 def _named(headings: Sequence[str], meaning: str) -> list[int]:
@@ -138,7 +134,7 @@ def _named(headings: Sequence[str], meaning: str) -> list[int]:
 
 def _measured(headings: Sequence[str], meaning: str) -> list[int]:
     units = [split_unit(heading)[1] for heading in headings]
-    return [place for place, unit in enumerate(units) if unit and _fits(_spelt(unit), _UNITS[meaning])]
+    return [place for place, unit in enumerate(units) if unit and _fits(unit, _UNITS[meaning])]
 
 
 def _fits(unit: str, wanted: str) -> bool:
@@ -147,7 +143,3 @@ def _fits(unit: str, wanted: str) -> bool:
     except ValueError:
         return False
     return True
-
-
-def _spelt(unit: str) -> str:
-    return "rpm" if unit.lower().replace(" ", "") in _TURNS else unit

@@ -262,7 +262,9 @@ def _rounding(time: Floats) -> float:
 def _until_end(values: Floats, name: str, time: Floats, late: int) -> Floats:
     """Cut a record, whose first sample is number `late`, behind its last; refuse one in which others are missing."""
     present = np.isfinite(values)
-    end = len(values) - int(present[::-1].argmax()) if present.any() else 0
+    if not present.any():
+        raise SceneError(name, "(no number)", f"none of its {len(values) + late} samples is a number")
+    end = len(values) - int(present[::-1].argmax())
     if not present[:end].all():
         first, count = int(present.argmin()), int((~present[:end]).sum())
         raise SceneError(

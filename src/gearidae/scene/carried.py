@@ -101,6 +101,8 @@ def numbers_of(values: object, unit: str, stated: str = "") -> Floats:
     cells = np.asarray(plain)
     if cells.dtype.kind in "OUST" and cells.ndim:
         return numbers_of([*np.ma.asarray(plain)] if np.ma.isMA(plain) else [*cells], unit, carried or stated)
+    if cells.dtype.kind == "M" and unit == "s" and cells.size:  # dates count from the first
+        cells = cells - cells.ravel()[0]
     if cells.dtype.kind == "m":
         cells, carried = _seconds(cells), "s"
     elif (kind := cells.dtype.kind) not in "fiu":

@@ -10,7 +10,14 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
-from gearidae.scene.text_table import TextTable, as_number, cells_of, check_regular, split_unit
+from gearidae.scene.text_table import (
+    TextTable,
+    as_number,
+    cells_of,
+    check_regular,
+    split_unit,
+    without_remark,
+)
 
 _LONGEST_LINE: Final = 2**22
 _SAMPLE: Final = 2**16  # bytes from which the encoding is recognised
@@ -96,6 +103,7 @@ def open_table(
     if unit_row and rows and _is_of_units(headings, rows[0].text, between):
         headings = _joined(headings, _split(rows[0].text, between))
         rows.pop(0)
+    named = len(headings)
     if rows:
         headings = _with_cells(headings, _split(rows[0].text, between))
     above = rows[0].number - 1 if rows else lines[-1].number
@@ -109,6 +117,7 @@ def open_table(
         skipped=sum(line.number < (heading or rows[0]).number for line in plain) + (skip or 0) if rows else 0,
         above=above,
         encoding=encoding,
+        remarked=len(headings) == named - 1,
         clock=_clock([line.text for line in plain if line.number <= above], between),
     )
 
@@ -137,7 +146,7 @@ def _first_lines(file: Any, skip: int) -> list[_Line]:
         text = text.strip(" \r\n\f\v")
         remark = text.startswith("#")
         if number > skip and text.strip():
-            lines.append(_Line(number, text.lstrip("# ") if remark else text.partition("#")[0], remark))
+            lines.append(_Line(number, text.lstrip("# ") if remark else without_remark(text), remark))
             plain += not remark
         if number > skip + _MOST_LINES:
             break
@@ -175,7 +184,10 @@ def _headings(text: str, delimiter: str) -> tuple[str, ...]:
         cells = _split(text, delimiter)
         return tuple(cells[:-1] if not cells[-1] else cells)
     names = _WITH_UNIT.findall(text)
-    return tuple(name.strip() for name in names) if len(names) > 1 else tuple(text.split())
+    whole = (
+        "".join(names).strip() == text.strip()
+    )  # of a single column, which may have a blank before its unit
+    return tuple(name.strip() for name in names) if len(names) > 1 or whole else tuple(text.split())
 
 
 def _from_first_row(

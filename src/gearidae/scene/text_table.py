@@ -2,7 +2,8 @@
 
 Encoding, separator, decimal sign and the line of headings are recognised where they are not given. Each row must have
 as many cells as there are headings, or as the first row has: a comma that is taken for a separator where it is a
-decimal sign would shift all numbers. A separator at the end of a line makes no cell. ``#`` begins a remark.
+decimal sign would shift all numbers. A separator at the end of a line makes no cell. ``#`` at the start of a
+line or after a blank begins a remark.
 """
 
 from __future__ import annotations
@@ -24,6 +25,9 @@ from numpy.typing import NDArray
 _SMALL: Final = 2**22
 """Bytes of a file below which it is read row by row: importing pandas takes longer."""
 _MISSING: Final = ("", "nan", "na", "n/a", "null", "-", "--", "---")
+_NO_NUMBER: Final = re.compile(r"[+-]?1\.#(qnan|snan|ind|inf)0*", re.IGNORECASE)
+"""What programs built with Microsoft's older libraries write for no number."""
+_REMARK: Final = re.compile(r"(?:^|(?<=\s))#(?![,;\t])")
 _NAMES: Final = {";": "semicolons", "\t": "tabs", ",": "commas", "": "blanks"}
 _UNIT: Final = re.compile(r"(.*?)\s*[\[(]\s*([^\[\]()]*(?:\([^()]*\)[^\[\]()]*)*)\s*[\])]\s*")
 
@@ -46,6 +50,8 @@ class TextTable:
         Lines above the headings that are no remarks.
     above : int
         Number of lines above the first row.
+    remarked : bool
+        Whether a row may have one cell more, a remark of the measuring program.
     clock : tuple of float, or None
         First time and distance of the samples [s], where a measuring program has written them above the first row.
     """
@@ -59,6 +65,7 @@ class TextTable:
     skipped: int
     above: int
     encoding: str
+    remarked: bool = False
     clock: tuple[float, float] | None = None
 
     @property
@@ -92,7 +99,7 @@ class TextTable:
             try:
                 for row, cells in enumerate(cells_of(texts, self.delimiter), 1):
                     width = width or len(cells)
-                    if len(cells) == width + 1 and not cells[-1]:
+                    if len(cells) == width + 1 and (self.remarked or not cells[-1]):
                         cells.pop()
                     if len(cells) != width:
                         raise ValueError(
@@ -150,7 +157,7 @@ class TextTable:
             with self.path.open("rb") as file, warnings.catch_warnings():
                 warnings.simplefilter("ignore")  # of columns that hold both texts and numbers
                 options: dict[str, Any] = {
-                    "sep": self.delimiter or r"\s+", "header": None, "skiprows": self.above, "comment": "#",
+                    "sep": self.delimiter or r"\s+", "header": None, "skiprows": self.above,
                     "decimal": self.decimal, "na_filter": False, "quoting": csv.QUOTE_NONE, "engine": "c",
                     "encoding": self.encoding.removesuffix("-sig"),
                 }  # fmt: skip
@@ -270,7 +277,18 @@ def as_number(cell: str, decimal: str) -> float | None:
     try:
         return float(cell) if "_" not in cell else None
     except ValueError:
-        return np.nan if cell.lower() in _MISSING else None
+        return np.nan if cell.lower() in _MISSING or _NO_NUMBER.fullmatch(cell) else None
+
+
+def without_remark(text: str) -> str:
+    """Return a line without its remark: what ``#`` begins, at the start of a line or after a blank.
+
+    It begins none within quotes, nor where a separator follows, as in the heading ``Sample #,time [s]``.
+    """
+    for match in _REMARK.finditer(text):
+        if text.count('"', 0, match.start()) % 2 == 0:
+            return text[: match.start()]
+    return text
 
 
 def _too_many(most: int) -> str:
@@ -288,7 +306,7 @@ def cells_of(texts: Iterator[str], delimiter: str) -> Iterator[list[str]]:
 def _contents(file: Any, above: int, line: list[int]) -> Iterator[str]:
     """Lines below a line, without remarks and empty ones; `line` is set to the number of each."""
     for number, text in enumerate(file, 1):
-        content = text.partition("#")[0]
+        content = without_remark(text)
         if number > above and content.strip():
             line[0] = number
             yield content

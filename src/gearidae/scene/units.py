@@ -43,6 +43,8 @@ _DEGREES = re.compile("\u00b0\\s*([CF])(?!\\w)")
 _OWN_ZERO = re.compile("\u00b0 *[CF]|deg[CF]|celsius|fahrenheit|\u2103|\u2109", re.IGNORECASE)
 """Units of temperature whose zero is not that of the kelvin."""
 _LONGEST = 100
+_TURNS = ("rpm", "u/min", "upm", "rev/min", "r/min", "tr/min")
+"""Revolutions per minute as data sheets and the programs of sensors write them, in small letters."""
 
 # pint holds angles to be pure numbers, so that 1 rpm would be 0.105 Hz, 1 Hz and 1/min would be 1 rad/s and 1/60 of it.
 _ANGLES = (
@@ -156,6 +158,8 @@ def _scale(own_unit: str, unit: str, difference: bool) -> tuple[Decimal, Decimal
     if _DECIMAL_COMMA.match(own_unit):
         raise ValueError(f"has a comma in its number: the decimal sign is a point; expected {_wanted(unit)}")
     own_unit = cf_unit(own_unit)
+    if unit == "rad/s" and own_unit.lower().replace(" ", "") in _TURNS:
+        own_unit = "rpm"
     bare = _LONE_ONE.sub("", _POWER.sub("", own_unit))
     # a power that begins the unit would be one of the number
     if own_unit.startswith(("^", "**")) or not _UNIT.fullmatch(bare):

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from gearidae.errors import SceneError
 from gearidae.scene.group import shorten
 from gearidae.scene.table_head import open_table
-from gearidae.scene.text_table import TextTable, as_number, check_regular
+from gearidae.scene.text_table import TextTable, as_number, check_regular, without_remark
 from gearidae.scene.units import from_text
 
 _TEXTS = (".csv", ".txt", ".dat")
@@ -130,7 +130,7 @@ def _is_of_another_program(path: Path) -> bool:
     """Whether a file is no text, or has lines of its own kind above rows of numbers, all with as many of them."""
     try:
         with path.open(encoding="utf-8") as file:
-            widths = [_row_width(line) for line in file if line.partition("#")[0].strip()]
+            widths = [_row_width(line) for line in file if without_remark(line).strip()]
     except (OSError, UnicodeDecodeError):
         return True
     first = next((k for k, width in enumerate(widths) if width), 0)

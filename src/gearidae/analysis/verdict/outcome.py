@@ -226,6 +226,10 @@ def outcomes(ds: xr.Dataset) -> list[GearOutcome | RollerOutcome]:
     SceneError
         If the dataset carries no scene, or that of a run with other labels.
     """
+    if "status" not in ds.variables and "status" not in ds.attrs:
+        raise SceneError(
+            "dataset", str(ds.attrs.get("title", "(no title)"))[:60], "holds no runs: it is of a study"
+        )
     refuse_other_labels(ds)
     if "verdict" in ds.variables:  # judged when the run ended, of which not everything is there
         return _kept(ds)
