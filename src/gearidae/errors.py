@@ -52,13 +52,15 @@ class SolverError(GearidaeError, RuntimeError):
     time : float
         Simulated time reached [s].
     state : dict of str to float
-        The state at that time, SI units.
+        The last state that is known, SI units.
     last_event : str
         The last recorded event, in words; empty where none is known.
     advice : str
         What to try next.
     dataset : xarray.Dataset, optional
         The samples and events recorded up to `time`.
+    state_time : float, optional
+        When `state` was [s]; `time` if not given.
     """
 
     def __init__(
@@ -70,6 +72,7 @@ class SolverError(GearidaeError, RuntimeError):
         last_event: str,
         advice: str,
         dataset: xr.Dataset | None = None,
+        state_time: float | None = None,
     ) -> None:
         self.message = message
         self.time = time
@@ -77,7 +80,10 @@ class SolverError(GearidaeError, RuntimeError):
         self.last_event = last_event
         self.advice = advice
         self.dataset = dataset
+        self.state_time = time if state_time is None else state_time
         where = ", ".join(f"{name} = {value:.6g}" for name, value in state.items())
+        if where and state_time is not None and state_time != time:
+            where = f"last sample, {state_time:.9g} s: {where}"
         where = f" ({where})" if where else ""
         last = f"last event: {last_event}; " if last_event else ""
         super().__init__(f"{message} at t = {time:.9g} s{where}; {last}{advice}")
@@ -91,6 +97,7 @@ class SolverError(GearidaeError, RuntimeError):
             self.last_event,
             self.advice,
             self.dataset,
+            self.state_time,
         )
 
 
@@ -101,8 +108,17 @@ def _rebuild_solver_error(
     last_event: str,
     advice: str,
     dataset: xr.Dataset | None,
+    state_time: float,
 ) -> SolverError:
-    return SolverError(message, time=time, state=state, last_event=last_event, advice=advice, dataset=dataset)
+    return SolverError(
+        message,
+        time=time,
+        state=state,
+        last_event=last_event,
+        advice=advice,
+        dataset=dataset,
+        state_time=state_time,
+    )
 
 
 class Interrupted(KeyboardInterrupt):

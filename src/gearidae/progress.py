@@ -14,6 +14,8 @@ from contextlib import contextmanager, nullcontext
 from time import monotonic
 from typing import Any, Final
 
+from gearidae.errors import SceneError
+
 log = logging.getLogger(__name__)
 
 RunProgress = Callable[[float, int], None]
@@ -26,6 +28,11 @@ _REDRAWN: Final = 0.1
 """Least time between two states of a bar in a notebook [s]."""
 SweepProgress = Callable[[float, int], None]
 """Called with the number of finished runs (with fractions for those under way) and the number of all runs."""
+
+
+def _check(wanted: object) -> None:
+    if not isinstance(wanted, bool):
+        raise SceneError("progress", str(wanted)[:60], "must be true, false or a function")
 
 
 @contextmanager
@@ -49,6 +56,7 @@ def run_progress(wanted: bool | RunProgress, duration: float) -> Iterator[RunRep
     if callable(wanted):
         yield RunReport(duration, wanted, None)
         return
+    _check(wanted)
     scale = 1e3 if duration < 1.0 else 1.0
     with _bar("simulating", duration * scale) if wanted else nullcontext() as advance:
         yield RunReport(duration, None, advance)
@@ -153,6 +161,7 @@ def sweep_progress(wanted: bool | SweepProgress, runs: int) -> Iterator[SweepPro
     if callable(wanted):
         yield wanted
         return
+    _check(wanted)
     with _bar("sweeping", float(runs)) if wanted else nullcontext() as advance:
 
         def update(done: float, total: int) -> None:

@@ -71,7 +71,7 @@ def teeth(ds: xr.Dataset, *, time: float | None = None) -> Figure:
     `gearidae.analysis.tooth_contacts`. The asperities drawn are a sample of the model's; those of a population are its
     own, with the joined ones marked.
     """
-    (state,) = mesh_states(ds, [math.inf if time is None else time])
+    (state,) = mesh_states(ds, [math.inf if time is None else float(time)])
     view = TeethView(ds, [state])
     view.draw(state)
     return view.figure

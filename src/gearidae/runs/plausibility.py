@@ -13,6 +13,10 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 
+_KEPT: Final = (("pinion", 1.5263e-20, 19), ("gear", 6.1052e-20, 76))
+"""Inertias [kg m^2] and teeth of the presets' gears,"""
+_KEPT_SIZE: Final = (34.715e-6, 2e-6)
+"""their pinion's base radius and their face width [m]."""
 _PEAKS: Final = 6.0
 """Height of a rough surface from valley to peak, in rms roughnesses."""
 
@@ -29,7 +33,8 @@ def doubts(scene: Scene) -> list[str]:
     list of str
         Sentences, each with the key and the numbers; empty for most scenes.
     """
-    return [*_sizes(scene), *_resistance(scene), *_bodies(scene), *_path_force(scene), *_idle(scene)]
+    parts = (_sizes, _resistance, _bodies, _path_force, _idle, _inertias)
+    return [line for part in parts for line in part(scene)]
 
 
 def log_doubts(scene: Scene) -> None:
@@ -106,11 +111,32 @@ def _resistance(scene: Scene) -> list[str]:
     return [f"load.harmonic swings by {about}: it is cut off where the sum falls below 0"]
 
 
-def _idle(scene: Scene) -> list[str]:
-    """Name loads and films that do nothing without their coefficient."""
-    if scene.gears is None or scene.mesh is None:
+def _inertias(scene: Scene) -> list[str]:
+    """Say that gears of another size have kept the inertias of the presets."""
+    gears, lines = scene.gears, []
+    if gears is None:
         return []
+    for name, inertia, teeth in _KEPT:
+        size = (getattr(gears, f"{name}_teeth"), gears.pinion_base_radius, gears.face_width)
+        if getattr(gears, f"{name}_inertia") == inertia and size != (teeth, *_KEPT_SIZE):
+            words = f"is still that of the presets, whose {name} has {teeth} teeth and another size"
+            lines.append(
+                f"gears.{name}_inertia = {with_prefix(inertia, 'kg m^2')} {words}: give gears.density in place of both"
+                " inertias, or that of this gear"
+            )
+    return lines
+
+
+def _idle(scene: Scene) -> list[str]:
+    """Name loads, films and attraction that do nothing, without their coefficient or their place."""
     lines = []
+    if scene.surface.hamaker > 0.0 and not any(
+        part.name == "bare" and part.share > 0.0 for part in scene.materials()
+    ):
+        words = "has no effect where the coating covers all: coating.hamaker acts there"
+        lines.append(f"surface.hamaker = {with_prefix(scene.surface.hamaker, 'J')} {words}")
+    if scene.gears is None or scene.mesh is None:
+        return lines
     if scene.gears.hub_friction == 0.0:
         for key in ("pinion_axial_load", "gear_axial_load", "pinion_hub_adhesion", "gear_hub_adhesion"):
             load = getattr(scene.gears, key)

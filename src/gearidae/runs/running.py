@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 SomeScene = TypeVar("SomeScene", bound=Scene)
 
+_NEAR_ROUNDING = 1e-11
+"""Tolerance below which long runs of ringing contacts end, as errors of rounding are no smaller."""
 _ADVICE = "try another rtol (run.rtol); the samples and events up to there are kept"
 _LEAST_MEMORY = 1.25e9
 """Addresses [bytes] that the solver's libraries and threads take; in memory there is a fourth of it."""
@@ -216,8 +218,12 @@ def early_end(ds: xr.Dataset, time: float, message: str = "", advice: str = _ADV
         To be raised; carries `ds`.
     """
     state: dict[str, float] = {}
+    sampled = None
+    if advice == _ADVICE and float(ds.attrs.get("rtol", 1.0)) < _NEAR_ROUNDING:
+        advice = f"such a tolerance is near rounding: try run.rtol = {_NEAR_ROUNDING:g}; {_ADVICE.partition('; ')[2]}"
     if ds.sizes["time"]:
         last = ds.isel(time=-1)
+        sampled = float(last["time"])
         state = {name: float(last[name]) for name in _STATE if name in ds}
     return SolverError(
         message or str(ds.attrs["message"] or ds.attrs["status"]),
@@ -226,6 +232,7 @@ def early_end(ds: xr.Dataset, time: float, message: str = "", advice: str = _ADV
         last_event=_last_event(ds),
         advice=advice,
         dataset=ds,
+        state_time=sampled,
     )
 
 

@@ -122,8 +122,12 @@ def check_joints(scene: GearScene) -> None:
         for load, radius in (("hub_adhesion", "hub_radius"), ("axial_load", "dimple_radius")):
             if getattr(gears, f"{shaft}_{load}") > 0.0 and getattr(gears, f"{shaft}_{radius}") == 0.0:
                 raise SceneError(f"gears.{shaft}_{radius}", 0.0, f"must be above 0 with gears.{shaft}_{load}")
-    if gears.hub_friction > 0.0 and "pinion hub" not in there and "gear hub" not in there:
-        raise SceneError("gears.pinion_hub_radius", 0.0, "a hub must have a radius with gears.hub_friction")
+    if gears.hub_friction > 0.0 and not there:
+        raise SceneError(
+            "gears.pinion_hub_radius",
+            0.0,
+            "a hub, a dimple or the pin must have a radius with gears.hub_friction",
+        )
     radii = {"pinion": scene.geometry.base_radius_pinion, "gear": scene.geometry.base_radius_gear}
     for shaft, base in radii.items():
         hub = there.get(f"{shaft} hub")

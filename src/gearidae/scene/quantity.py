@@ -260,5 +260,13 @@ def _read_switch(value: object) -> bool:
     return value
 
 
+def switch(name: str, value: object) -> bool:
+    """Read a setting that is true or false; a `SceneError` says what is wrong with it."""
+    try:
+        return _read_switch(value)
+    except ValueError as error:
+        raise SceneError(name, shorten(value), str(error)) from None
+
+
 Switch = Annotated[bool, BeforeValidator(_read_switch)]
 """True or false."""

@@ -18,7 +18,7 @@ from gearidae.runs.run_cache import RunCache
 from gearidae.runs.running import failure_of
 from gearidae.scene import require_gears
 from gearidae.scene.joints import joints
-from gearidae.scene.quantity import Quantity, whole
+from gearidae.scene.quantity import Quantity, switch, whole
 from gearidae.studies.declared.hub_life import FITTED, QUANTILES, STUDY
 from gearidae.studies.hub_turns import SUMS, Slid, Turns, run_turns, settling_scene
 from gearidae.studies.hub_wear import (
@@ -146,8 +146,10 @@ def hub_life(
     """
     scene = require_gears(scene)
     base, execution = prepared(scene, options, samples="off")
+    whole("seeds", seeds, 1, 1_000_000)
     wear = _wear(base, coefficient, threshold, (spread, seeds), length)
     measured = Turns(whole("turns", turns, 1, 10_000), _TOLERANCE.take("tolerance", tolerance))
+    clearance = switch("clearance", clearance)
     requested = None
     if frequencies is not None:
         requested = [_FREQUENCY.take("frequencies", frequency) for frequency in frequencies]
@@ -166,7 +168,7 @@ def hub_life(
         "coefficient": wear.coefficient,
         "threshold": threshold_text,
         "spread": [wear.spread, len(wear.factors)],
-        "clearance": bool(clearance),
+        "clearance": clearance,
         "frequencies": requested,
         "length": wear.length,
         "turns": [measured.count, measured.tolerance],

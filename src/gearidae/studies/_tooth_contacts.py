@@ -80,6 +80,10 @@ def _one_run(ds: xr.Dataset) -> xr.Dataset:
             f"{ds.sizes[dims[0]]} runs",
             f"must be a single run: select one, as ds.isel({dims[0]}=0) or --select {dims[0]}=... do",
         )
+    if "transmission_error" not in ds.variables:
+        raise SceneError(
+            "dataset", str(ds.attrs.get("title", "(no title)"))[:60], "holds no run with its motion"
+        )
     if not motion_samples(ds):
         raise SceneError("dataset", "transmission_error", "the dataset has no samples of it")
     return next(run for _, run in runs(ds))

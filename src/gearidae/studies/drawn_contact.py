@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import partial
-from typing import NamedTuple, TypeAlias
+from typing import Final, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ from scipy.optimize import brentq, minimize_scalar
 from gearidae.arrays import Floats
 from gearidae.asperities import tip_law
 from gearidae.asperities.registry import TipLaw
+from gearidae.errors import SceneError
 from gearidae.mesh.pair_contact import PairContact
 from gearidae.populations.flanks import FlankAsperities
 from gearidae.populations.materials import materials_at
@@ -57,6 +58,10 @@ class PullOff(NamedTuple):
     joined: int
     holding: int
     gap: float
+
+
+DEEPEST: Final = 8.0
+"""Largest overlap of the mean planes, in roughnesses: beyond, the flanks are solid."""
 
 
 class DrawnContact:
@@ -101,7 +106,18 @@ class DrawnContact:
         return self._top[:count], join, detach, groups
 
     def pull_off(self, load: float) -> PullOff:
-        """Press the contact together until it first carries a load [N], and part it."""
+        """Press the contact together until it first carries a load [N], and part it.
+
+        Raises
+        ------
+        SceneError
+            If it takes more than `DEEPEST` roughnesses of overlap to carry the load.
+        """
+        top, _, _, groups = self._nearest(self._top.size)
+        deepest, every = np.array([-DEEPEST * self._sigma]), np.ones((1, top.size), np.bool_)
+        if load > (most := float(self._force(top, groups, deepest, every)[0])):
+            reason = f"must be at most {most:.3g} N, which overlaps the flanks by {DEEPEST:g} roughnesses"
+            raise SceneError("load", load, reason)
         count = min(_FIRST, self._top.size)
         while True:
             top, join, detach, groups = self._nearest(count)

@@ -110,6 +110,8 @@ def contact_resonance(scene: Scene, joined: float | None = None) -> float:
         If the scene has no gears or no drive torque that presses them together.
     """
     scene = require_gears(scene)
+    if joined is not None and not math.isfinite(joined):
+        raise SceneError("joined", joined, "must be a finite number of metres")
     torque = mean_drive_torque(scene)
     if not torque > 0.0:
         raise SceneError("drive.torque", torque, "must not be 0, or nothing presses the teeth together")

@@ -15,6 +15,10 @@ FEWEST: Final = 8
 """Rows that indices can be estimated from at all."""
 
 
+_ROUNDING: Final = 1e-12
+"""Of the largest figure: what varies by less is constant, and its indices would be those of rounding."""
+
+
 class Indices(NamedTuple):
     """Sobol' indices of one figure.
 
@@ -72,7 +76,7 @@ def indices_of(figures: Floats, keys: int, *, seed: int = 0) -> Indices:
     if rows < FEWEST:
         return Indices(nothing, nothing, nothing, nothing, rows)
     used = table[:, complete[:rows]]
-    if np.ptp(used[:2]) == 0.0:
+    if np.ptp(used[:2]) <= _ROUNDING * np.abs(used[:2]).max():
         return Indices(nothing, nothing, nothing, nothing, rows)
     generator = np.random.default_rng(seed)
     drawn = [_estimate(used[:, generator.integers(0, rows, rows)]) for _ in range(RESAMPLES)]
