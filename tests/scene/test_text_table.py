@@ -195,3 +195,31 @@ def test_bytes_that_are_no_text_are_refused_in_one_line(reader, tmp_path):
         with pytest.raises(gd.SceneError, match="is no text") as caught:
             reader(path)
         assert "\n" not in str(caught.value)
+
+
+@pytest.mark.usefixtures("way")
+@pytest.mark.parametrize("cell", ["1.#QNAN", "-1.#IND", "-1.#IND00", "1.#SNAN"])
+def test_a_number_sign_within_a_cell_is_no_remark(cell, tmp_path):
+    """What Windows writes for an undefined number is missing in a record, and refused in a schedule and a map."""
+    times = [n / 1000.0 for n in range(40)]
+    rows = [f"{n},{t!r},2.5 # checked" for n, t in enumerate(times)]
+    rows[7] = f"7,{times[7]!r},{cell}"
+    path = tmp_path / "record.csv"
+    path.write_text("\n".join(["#written by hand", "Sample #,time [s],gear_speed [rad/s]", *rows]))
+    with pytest.raises(gd.SceneError, match=r"sample 7 .* is missing"):
+        read_signal(path)
+    assert read_signal(path, bridge=1).gear_speed.values.tolist() == [2.5] * 40
+    table = {"file": path, "time": "time [s]", "value": "gear_speed [N m]"}
+    path.write_text(path.read_text().replace("rad/s", "N m"))
+    with pytest.raises(gd.SceneError, match=f"{cell}, not a finite|{cell}', no number"):
+        gd.preset("teodorescu2009").replace({"drive.schedule": table})
+    (tmp_path / "scan.csv").write_text("\n".join([" ".join(["1", cell, "2"])] * 70))
+    with pytest.raises(gd.SceneError, match=f"{cell}, not a finite"):
+        read_scan(tmp_path / "scan.csv")
+
+
+def test_a_record_without_a_number_is_refused(tmp_path):
+    path = tmp_path / "record.csv"
+    path.write_text("time [s],gear_speed [rad/s]\n" + "".join(f"{n},nan\n" for n in range(40)))
+    with pytest.raises(gd.SceneError, match="none of its 40 samples is a number"):
+        read_signal(path)

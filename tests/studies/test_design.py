@@ -173,6 +173,18 @@ def test_a_single_key_has_all_of_the_variance():
     assert agrees_alone.first_order[0] == pytest.approx(1.0, abs=0.2)
 
 
+def test_a_figure_that_varies_by_rounding_has_no_indices():
+    """A sum of the same numbers in other orders: it differs in its last places."""
+    numbers = np.random.default_rng(3).normal(size=64)
+    orders = [np.random.default_rng(seed).permutation(numbers) for seed in range(5 * 32)]
+    figure = 1.0 + np.array([np.cumsum(order)[-1] for order in orders])
+    assert np.ptp(figure) > 0.0
+    indices = indices_of(figure, 3)
+    assert np.isnan(indices.first_order).all()
+    assert np.isnan(indices.total_order).all()
+    assert np.isfinite(indices_of(1.0 + 1e-9 * numbers.repeat(5)[: 5 * 32], 3).total_order).all()
+
+
 def test_rows_that_are_incomplete_do_not_count():
     """Of 64 rows one has failed: the first 32 complete ones are used, as if there were no others."""
     made = pick_freeze_design(of_functions(stats.norm(), stats.norm()), 64, "sobol", seed=3)

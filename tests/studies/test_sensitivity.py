@@ -73,6 +73,26 @@ def test_a_jump_is_told_by_its_uncertainty():
 
 
 @pytest.mark.parametrize(
+    ("corner", "slope"), [(0.8, None), (0.8003, -1.0), (0.79999, 1.0), (0.806, -1.0), (0.83, -1.0)]
+)
+@pytest.mark.parametrize("smooth", [lambda x: 0.0, lambda x: x**3])
+def test_a_corner_at_the_input_or_beside_it(corner, slope, smooth):
+    """|x - corner| at 0.8: central differences agree over all steps that meet the corner, and are no derivative."""
+    scene = FLIGHT.replace({"coating.sam_fraction": 0.8, "run.duration": 1e-9})
+    derivative = gd.studies.sensitivity(
+        scene,
+        "coating.sam_fraction",
+        of=lambda ds: abs(float(ds.sam_fraction) - corner) + smooth(float(ds.sam_fraction)),
+    )
+    rest = smooth(0.8 + 1e-6) - smooth(0.8 - 1e-6)
+    if slope is None:
+        assert derivative.uncertainty >= 1.0
+    else:
+        assert abs(derivative.value - slope - rest / 2e-6) <= derivative.uncertainty + 1e-9
+        assert derivative.uncertainty < 0.02
+
+
+@pytest.mark.parametrize(
     ("key", "of", "message"),
     [
         ("drive.nothing", "final_speed", "drive.nothing"),

@@ -21,6 +21,13 @@ def heights():
     return made
 
 
+def test_complex_heights_are_refused(heights, tmp_path):
+    """Their imaginary parts would be lost."""
+    np.save(tmp_path / "scan.npy", heights + 1j * heights)
+    with pytest.raises(gd.SceneError, match="complex numbers"):
+        read_scan(tmp_path / "scan.npy")
+
+
 @pytest.mark.parametrize("separator", [",", ";", "\t", "  "])
 def test_tables_in_text(heights, tmp_path, separator):
     path = tmp_path / "scan.csv"

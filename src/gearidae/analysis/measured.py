@@ -216,7 +216,7 @@ def _from_text(source: Path, wanted: Wanted, reading: Mapping[str, Any], step: f
             raise
         columns = find_columns(table.headings, wanted)
     numbers, said, start = (
-        table.numbers([column.place for column in columns], holes=True),
+        table.numbers([column.place for column in columns], holes=True, undefined=True),
         table.recognised,
         0.0,
     )

@@ -143,6 +143,8 @@ def signals(
     array = array.transpose(..., "time")
     time, samples = to_si(array["time"], "s", "time"), to_si(array, units, name)
     start, interval = _uniform(time)
+    if not np.isfinite(samples).any():  # of several runs, some may have failed at their start
+        raise SceneError(name, "(no number)", f"none of its {len(time)} samples is a number")
     # a running mean has nothing for the first samples
     late = int(np.isfinite(samples).reshape(-1, samples.shape[-1]).any(axis=0).argmax())
     start, samples = start + late * interval, samples[..., late:]
@@ -262,9 +264,7 @@ def _rounding(time: Floats) -> float:
 def _until_end(values: Floats, name: str, time: Floats, late: int) -> Floats:
     """Cut a record, whose first sample is number `late`, behind its last; refuse one in which others are missing."""
     present = np.isfinite(values)
-    if not present.any():
-        raise SceneError(name, "(no number)", f"none of its {len(values) + late} samples is a number")
-    end = len(values) - int(present[::-1].argmax())
+    end = len(values) - int(present[::-1].argmax()) if present.any() else 0
     if not present[:end].all():
         first, count = int(present.argmin()), int((~present[:end]).sum())
         raise SceneError(

@@ -113,7 +113,12 @@ class TextTable:
                 raise ValueError(f"is no text below line {line[0]}") from None
 
     def numbers(
-        self, columns: Sequence[int] | None = None, *, holes: bool = False, most: int | None = None
+        self,
+        columns: Sequence[int] | None = None,
+        *,
+        holes: bool = False,
+        undefined: bool = False,
+        most: int | None = None,
     ) -> NDArray[np.float64]:
         """Read columns of numbers.
 
@@ -123,6 +128,8 @@ class TextTable:
             Which of the columns; all of them by default.
         holes : bool, optional
             Whether cells may be empty, or hold a word for nothing such as ``nan``.
+        undefined : bool, optional
+            Whether they may also hold what a failed computation leaves (``1.#QNAN``).
         most : int, optional
             Rows that there may be.
 
@@ -138,7 +145,7 @@ class TextTable:
         """
         table = self._all_at_once(columns) if self.size > _SMALL else None
         if table is None:
-            table = self._row_by_row(columns, holes=holes, most=most)
+            table = self._row_by_row(columns, holes=holes, undefined=undefined, most=most)
         if most is not None and len(table) > most:
             raise ValueError(_too_many(most))
         return table
@@ -176,7 +183,7 @@ class TextTable:
         return numbers if np.isfinite(numbers).all() else None
 
     def _row_by_row(
-        self, columns: Sequence[int] | None, *, holes: bool, most: int | None
+        self, columns: Sequence[int] | None, *, holes: bool, undefined: bool, most: int | None
     ) -> NDArray[np.float64]:
         """Read a table with holes, or find its first fault."""
         numbers = array("d")
@@ -189,7 +196,8 @@ class TextTable:
             last_is_empty = last_is_empty and not cells[-1]
             for column in wanted:
                 number = as_number(cells[column], self.decimal)
-                if number is None or not (math.isfinite(number) or (holes and math.isnan(number))):
+                may_lack = holes and (undefined or "#" not in cells[column])
+                if number is None or not (math.isfinite(number) or (may_lack and math.isnan(number))):
                     fault = f"row {count} {self._fault(cells[column], number)}"
                     raise ValueError(f"line {line}: column {self._named(column)}, {fault}")
                 numbers.append(number)

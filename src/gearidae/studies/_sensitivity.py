@@ -11,9 +11,11 @@ then out by
 The second term is the trap: with rtol 1e-6 the figures of a ringing contact scatter by some 1e-5, and over a relative
 step of 1e-7 their difference is noise, of either sign. Here both terms are measured. The scatter comes from runs at
 inputs so close to each other that the figure itself cannot differ, the first term from differences over steps in a
-ratio of 2, whose errors are in a ratio of 4. The step with the least sum counts. What the solver's error changes
-without scatter is seen at another tolerance only: all is done at two of them at least, and a tenth of what both
-derivatives differ by counts too. If that is not good enough, the tolerance is made tighter still.
+ratio of 2, whose errors are in a ratio of 4. The step with the least sum counts. At a corner, such as that of |x|, all
+central differences may agree and be no derivative: there the differences to both sides differ by the same amount over
+every step, where those of a smooth figure differ in proportion to it, and half that amount counts as well. What the
+solver's error changes without scatter is seen at another tolerance only: all is done at two of them at least, and a
+tenth of what both derivatives differ by counts too. If that is not good enough, the tolerance is made tighter still.
 """
 
 from __future__ import annotations
@@ -27,6 +29,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.runs.execution import interruptible
 from gearidae.runs.executors import check_executor, side_by_side
@@ -44,6 +47,8 @@ _LARGEST_STEP: Final = 0.04
 """Largest step, over the size of the input."""
 _STEPS: Final = 7
 """Steps, each half of the one before."""
+_MOST_STEPS: Final = 16
+"""Steps where the smallest of those still meet a corner."""
 _NEIGHBOURS: Final = 1e-9
 """Over the size of the input: distance between the inputs whose figures give the scatter."""
 _SCATTERED: Final = 5
@@ -146,7 +151,7 @@ def sensitivity(
     for rtol in _tolerances(scene.run.rtol):
         of_scene = _Runs(scene.replace({"run.rtol": rtol}), key, figure, backend, executor)
         with interruptible():
-            derivative = _differentiate(of_scene, middle, size, rtol)
+            derivative = _differentiate(of_scene, middle, size, rtol, accuracy)
         runs += derivative.runs
         if before is not None:
             more = _REMAINING * abs(derivative.value - before.value)
@@ -185,36 +190,53 @@ def _run(scene: Scene, figure: Figure, backend: str) -> float:
     return float(figure(simulate(scene, backend=backend)))
 
 
-def _differentiate(runs: _Runs, middle: float, size: float, rtol: float) -> Sensitivity:
+def _differentiate(runs: _Runs, middle: float, size: float, rtol: float, accuracy: float) -> Sensitivity:
     """Differentiate at one tolerance."""
     places = np.arange(_SCATTERED) - (_SCATTERED - 1) / 2.0
     near = np.array(runs([middle + _NEIGHBOURS * size * place for place in places]))
     figure = float(near[_SCATTERED // 2])
     scatter = max(float(np.ptp(near)), _SMALLEST_SCATTER * abs(figure))
-    steps = _LARGEST_STEP * size * 0.5 ** np.arange(_STEPS)
-    inputs = [middle + sign * h for h in steps for sign in (1.0, -1.0)]
-    values = np.array(runs(inputs)).reshape(_STEPS, 2)
-    differences = (values[:, 0] - values[:, 1]) / (2.0 * steps)
-    # errors of two steps are in a ratio of 4: the finer one is out by a third of what both differ by; where that is not
-    # so the figure is not smooth, and the whole difference counts
-    apart = np.abs(np.diff(differences))
-    worse = np.maximum(apart, 0.25 * np.concatenate([apart[:1], apart[:-1]]))
-    # slopes on either side differ by f'' h where the figure is smooth, which halves with the step, and by a constant at
-    # a corner, also at one that is nearer than the smallest step: the derivative may be that of either side
-    sides = (values[:, 0] - 2.0 * figure + values[:, 1]) / steps
-    corner = 0.5 * np.abs(2.0 * sides[1:] - sides[:-1])
-    worse = worse + np.maximum(corner - 4.0 * scatter / steps[1:], 0.0)
-    errors = np.where(np.isfinite(worse), worse, math.inf) + scatter / steps[1:]
-    k = int(np.argmin(errors))
+    steps, values = np.empty(0), np.empty((0, 2))
+    more = _STEPS
+    while True:
+        added = _LARGEST_STEP * size * 0.5 ** np.arange(steps.size, steps.size + more)
+        inputs = [middle + sign * h for h in added for sign in (1.0, -1.0)]
+        steps, values = np.concatenate([steps, added]), np.vstack([values, np.reshape(runs(inputs), (-1, 2))])
+        differences = (values[:, 0] - values[:, 1]) / (2.0 * steps)
+        smooth, noise = _truncation(differences, values, figure, steps), scatter / steps[1:]
+        errors = smooth + noise
+        k = int(np.argmin(errors))
+        value = float(differences[k + 1])
+        # a corner, and not scatter, limits the smallest step: the input may be beside it
+        cornered = smooth[-1] > noise[-1] and errors[k] > accuracy * abs(value)
+        if not cornered or steps.size >= _MOST_STEPS:
+            break
+        more = 2 if steps.size + 2 <= _MOST_STEPS else _MOST_STEPS - steps.size
     return Sensitivity(
-        value=float(differences[k + 1]),
+        value=value,
         uncertainty=float(errors[k]),
         figure=figure,
         scatter=scatter,
         step=float(steps[k + 1]),
         rtol=rtol,
-        runs=_SCATTERED + len(inputs),
+        runs=_SCATTERED + 2 * steps.size,
     )
+
+
+def _truncation(differences: Floats, values: Floats, figure: float, steps: Floats) -> Floats:
+    """Bound what central differences over all steps but the first are out by, scatter left out.
+
+    Errors of two steps are in a ratio of 4: the finer one is out by a third of what both differ by; where that is not
+    so the figure is not smooth, and the whole difference counts. So does half of the corner between both sides.
+    """
+    apart = np.abs(np.diff(differences))
+    worse = np.maximum(apart, 0.25 * np.concatenate([apart[:1], apart[:-1]]))
+    bend = (values.sum(axis=1) - 2.0 * figure) / steps  # difference of the one-sided slopes
+    corner = 0.5 * np.abs(2.0 * bend[1:] - bend[:-1])  # what is not in proportion to the step
+    # beside a corner a single such value may vanish by chance, not two in a row
+    corner = np.maximum(corner, 0.25 * np.concatenate([corner[:1], corner[:-1]]))
+    worse = np.maximum(worse, corner)
+    return np.where(np.isfinite(worse), worse, math.inf)
 
 
 def _number(scene: Scene, key: str) -> float:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.errors import SceneError
+from gearidae.scene.carried import numbers_of
 from gearidae.scene.group import shorten
 from gearidae.scene.table_head import open_table
 from gearidae.scene.text_table import TextTable, as_number, check_regular, without_remark
@@ -155,7 +156,7 @@ def _array(path: Path) -> NDArray[np.float64]:
     declared = np.load(path, mmap_mode="r", allow_pickle=False)
     if declared.size > _MOST_POINTS:
         raise ValueError(f"has {declared.size} points; there may be {_MOST_POINTS}")
-    return np.asarray(declared, dtype=np.float64)
+    return numbers_of(declared, "m")  # refuses complex numbers, whose imaginary parts would be lost
 
 
 def _text(path: Path, unit: str | None) -> Scan:
