@@ -230,6 +230,15 @@ def _family() -> Iterator[str]:
     yield "a picture: see draw_family"
 
 
+def _broken_silicon() -> Iterator[str]:
+    bare = gd.preset("teodorescu2009_low_speed").replace({"coating.sam_fraction": 0.0, "run.samples": "off"})
+    for duration, energies in ((0.3, (1.5, 1.2, 1.0, 0.88, 0.86, 0.8, 0.072)), (3.0, (0.82, 0.8, 0.78))):
+        ds = gd.sweep(bare.replace({"run.duration": duration}), {"surface.energy": energies})
+        for energy, outcome in zip(energies, gd.outcomes(ds), strict=True):
+            word = outcome.verdict.replace("_", " ")
+            yield f"{energy:g} J/m^2, {duration:g} s: {word}, at least {outcome.min_speed:.3g} rad/s"
+
+
 def _sizes() -> Iterator[str]:
     geometry = gd.preset("teodorescu2009").geometry
     for name, base in (("pinion", geometry.base_radius_pinion), ("gear", geometry.base_radius_gear)):
@@ -248,6 +257,7 @@ STATEMENTS: Final[Mapping[int, Callable[[], Iterator[str]]]] = {
     7: _parting,
     8: _family,
     9: _sizes,
+    10: _broken_silicon,
 }
 """Rows of the table, and what makes their numbers."""
 
