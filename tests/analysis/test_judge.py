@@ -91,7 +91,15 @@ def test_a_scheduled_start_in_the_last_twentieth_is_a_running_up(fall, verdict):
     ],
 )
 def test_conditions_of_standing(advance, free, lasts, expected):
-    assert stands(advance, free, lasts, 0.3) is expected
+    assert stands(advance, free, lasts, 0.3, together=False) is expected
+
+
+def test_a_gear_that_settles_with_free_gears_stands_and_stops():
+    assert stands(0.42, 0.43, 0.2, 0.3, together=True)
+    assert not stands(0.042, 0.043, 0.002, 0.3, together=True)  # for too short a time
+    settled = Extremes(STANDS, free_advance=0.42, settled=1)
+    assert gear_verdict(settled, "finished", scheduled=False) == "stops"
+    assert not has_stuck(settled)
 
 
 def test_what_holds_in_words():

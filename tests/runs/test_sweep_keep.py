@@ -20,7 +20,7 @@ ROLLER = gd.preset("roller_slow").replace({"run.samples": 11, "contact.bodies": 
 OVER = {"coating.sam_fraction": [1.0, 0.5], "drive.torque": [4e-18, 5e-18]}
 LEAST = {
     *("status", "message", "wall_time", "verdict", "impacts", "flank_changes", "stick_time", "stick_exits"),
-    *("back_time", "holding", "followed_time", "free_advance", "turned_back"),
+    *("back_time", "holding", "followed_time", "advance", "free_advance", "settled", "turned_back"),
 }
 
 

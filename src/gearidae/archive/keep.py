@@ -45,7 +45,9 @@ _ALWAYS = ("status", "message", "wall_time", *VERDICT)
 _IN_WORDS = (
     "stick_time",
     "stick_exits",
+    "advance",
     "free_advance",
+    "settled",
     "holding",
     "turned_back",
     "back_time",

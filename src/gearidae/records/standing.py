@@ -12,9 +12,13 @@ from typing import Final
 
 from gearidae.records.quantity import PITCHES, SECONDS, TORQUE, Quantity, count
 
-COLUMNS = ("begin", "end", "advance", "free_advance", "held_torque", "holding", "driven_time", "rest_time")
+COLUMNS = (
+    *("begin", "end", "advance", "free_advance", "held_torque", "holding", "driven_time", "rest_time"),
+    "settled",
+)
 """Numbers of a standstill: begin and end [s], end NaN at the end of the run; advances [pitches]; largest torque held
-beyond the dry load [N m]; what held it, a `Holding`; times for which the drive exceeded the load, and at rest [s]."""
+beyond the dry load [N m]; what held it, a `Holding`; times for which the drive exceeded the load, and at rest [s]; and
+whether free gears have settled, which archives of version 0.3.0 do not say."""
 
 
 class Holding(IntFlag):
@@ -26,11 +30,23 @@ class Holding(IntFlag):
     ADHESION = 8
     PIN_FRICTION = 16
     AXIAL_LOAD = 32
+    DRIVE_WELL = 64
 
     @property
     def words(self) -> str:
         """Names of all that hold it."""
-        return " and ".join((part.name or "").lower().replace("_", " ") for part in Holding if part in self)
+        names = ((part.name or "").lower().replace("_", " ") for part in Holding if part in self)
+        return " and ".join("the drive's own well" if name == "drive well" else name for name in names)
+
+    @property
+    def by_adhesion(self) -> bool:
+        """Whether adhesion has a part in it."""
+        return Holding.ADHESION in self
+
+    @property
+    def by_friction(self) -> bool:
+        """Whether dry resistance or friction has a part in it."""
+        return bool(self & ~(Holding.ADHESION | Holding.DRIVE_WELL))
 
 
 _time, _advance = partial(Quantity, unit=SECONDS, archive=True), partial(Quantity, unit=PITCHES, archive=True)
@@ -47,6 +63,11 @@ STANDING_NOW: Final = (
     _advance("free_advance", "pitches that free gears would have been away from there"),
     _time("driven_time", "time since then for which the drive exceeded the dry load"),
     _torque("held_torque", "largest torque of the drive at the gear beyond the dry load since then"),
+    _number(
+        "settled",
+        "1 if free gears have settled there, 2 if the gear has settled with them",
+        comment="within a pitch, and no farther away in the second half of the time than in the first",
+    ),
     _number(
         "holding",
         "what holds the gear at the end",
@@ -76,9 +97,14 @@ NOTICED = 0.1
 """Pitches that free gears must have moved for a standstill of any duration, and for one that sticks."""
 SHARE = 0.01
 """Of the time since the start: a standstill in which free gears have moved less lasts longer than this."""
+SETTLED_WITHIN = 1.0
+"""Pitches that free gears may go from a zero and settle."""
+GROWS = 1e-2
+"""Share by which a distance from a zero must exceed the largest before to have grown: what approaches its rest
+exponentially has come that near after five times its time constant, and a ringing gear repeats its amplitude closer."""
 
 
-def stands(advance: float, free_advance: float, lasts: float, until: float) -> bool:
+def stands(advance: float, free_advance: float, lasts: float, until: float, together: bool) -> bool:
     """Whether a gear stands that has stayed within half a pitch since a zero of its speed.
 
     Parameters
@@ -89,12 +115,14 @@ def stands(advance: float, free_advance: float, lasts: float, until: float) -> b
         Time since the zero [s].
     until : float
         Time since the start of the chain of runs [s].
+    together : bool
+        Whether free gears have settled, and the gear has gone no farther in the second half of the time either.
     """
-    held = free_advance == 0.0 or advance < 0.5 * free_advance
+    held = free_advance == 0.0 or advance < 0.5 * free_advance or together
     return held and (free_advance >= NOTICED or lasts > SHARE * until)
 
 
-def is_driven(free_advance: float, driven_time: float, until: float) -> bool:
+def is_driven(free_advance: float, driven_time: float, until: float, settled: int) -> bool:
     """Whether a gear that stands is driven: it sticks, and does not only stop.
 
     Parameters
@@ -105,5 +133,7 @@ def is_driven(free_advance: float, driven_time: float, until: float) -> bool:
         For which the drive exceeded the dry load [s].
     until : float
         As for `stands`.
+    settled : int
+        Whether free gears have settled: the drive then goes on to turn nothing.
     """
-    return free_advance >= NOTICED or driven_time > SHARE * until
+    return not settled and (free_advance >= NOTICED or driven_time > SHARE * until)

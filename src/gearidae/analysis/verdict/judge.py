@@ -58,7 +58,9 @@ def gear_verdict(extremes: Extremes | None, status: str, *, scheduled: bool) -> 
     if extremes is None or (scheduled and status != "finished"):
         return "unfinished"
     if not math.isnan(extremes.stick_time):
-        return standing_verdict(extremes.free_advance, extremes.driven_time, extremes.followed_time)
+        return standing_verdict(
+            extremes.free_advance, extremes.driven_time, extremes.followed_time, extremes.settled
+        )
     if (
         extremes.turned_back > 0.0
     ):  # the last movement of more than half a pitch was back; a smaller one may follow
@@ -75,9 +77,9 @@ def has_stuck(extremes: Extremes) -> bool:
     return gear_verdict(extremes, "finished", scheduled=True) in STUCK
 
 
-def standing_verdict(free_advance: float, driven_time: float, until: float) -> str:
+def standing_verdict(free_advance: float, driven_time: float, until: float, settled: int) -> str:
     """Say what a gear does that stands: it sticks if it is driven; see `gearidae.records.standing`."""
-    return "sticks" if is_driven(free_advance, driven_time, until) else "stops"
+    return "sticks" if is_driven(free_advance, driven_time, until, settled) else "stops"
 
 
 def roller_verdict(extremes: Extremes | None, status: str, impacts: int, touching: bool) -> str:

@@ -80,6 +80,10 @@ class GearOutcome(Shown):
         Whether the run goes on from another: times, exits and extremes are those of the chain.
     reached : float
         Time since the start of the chain to which the run has been followed [s]; NaN if unknown.
+    advance : float
+        Pitches that the gear has been away from where it stands; NaN if unknown.
+    settled : int
+        1 if free gears have settled there, within a pitch, 2 if the gear has with them.
     """
 
     label: dict[str, Any]
@@ -100,6 +104,13 @@ class GearOutcome(Shown):
     old: bool = False
     chained: bool = False
     reached: float = math.nan
+    advance: float = math.nan
+    settled: int = 0
+
+    @property
+    def held_by(self) -> str:
+        """Names of what holds a gear that stands; `holding` has them for counting, `Holding.by_adhesion` among them."""
+        return self.holding.words
 
     def resolved_min_speed(self, rtol: float) -> float:
         """Smallest speed [rad/s]; 0 where that is less than a relative tolerance resolves beside the largest."""
@@ -139,6 +150,11 @@ class GearOutcome(Shown):
         if self.verdict == "sticks":
             words = f"sticks at {since}" if since else f"does not start in {self._window}"
             return f"{words}: {free}" if self.scheduled and since and self.free_advance > 0.0 else words
+        if self.settled and since and self.free_advance > 0.0:
+            words = f"came to rest at {since}"
+            if self.advance < 0.5 * self.free_advance:
+                return f"{words}, {self.free_advance:.3g} pitches before free gears{held}"
+            return f"{words}, as free gears do{held}"
         if self.free_advance > 0.0:
             words = f"came to rest at {since}" if since else f"does not start in {self._window}"
             return f"{words}: {free}{held}"
@@ -267,6 +283,8 @@ def _gear(label: dict[str, Any], run: xr.Dataset) -> GearOutcome:
         old=old,
         chained="start_time" in run.attrs,
         reached=kept.followed_time,
+        advance=kept.advance,
+        settled=int(kept.settled),
     )
 
 
@@ -320,7 +338,7 @@ def _kept(ds: xr.Dataset) -> list[GearOutcome | RollerOutcome]:
             numbers = {"min_speed": row["min_gear_speed"], "max_speed": row["max_gear_speed"]}
             stood = row["back_time"] if math.isnan(row["stick_time"]) else row["stick_time"]
             numbers |= {"stick_time": stood, "mesh_exits": row["stick_exits"]}
-            numbers |= {name: row[name] for name in ("free_advance", "turned_back")}
+            numbers |= {name: row[name] for name in ("free_advance", "advance", "turned_back", "settled")}
             numbers |= {"holding": Holding(row["holding"]), "scheduled": scheduled}
             numbers["reached"] = row["followed_time"]
             numbers["old"] = scheduled and "followed_time" not in columns
@@ -334,8 +352,9 @@ _KEPT: dict[str, Any] = {
     "impacts": 0,
     "stick_exits": 0,
     "holding": 0,
+    "settled": 0,
     **dict.fromkeys(("wall_time", "min_gear_speed", "max_gear_speed", "stick_time"), math.nan),
-    **dict.fromkeys(("free_advance", "turned_back", "back_time", "followed_time"), math.nan),
+    **dict.fromkeys(("free_advance", "advance", "turned_back", "back_time", "followed_time"), math.nan),
     **dict.fromkeys(("largest_mesh_force", "smallest_mesh_force", "residual", "residual_bound"), math.nan),
 }
 """Variables of a sweep made with ``keep``, with what stands for one that has not been kept."""

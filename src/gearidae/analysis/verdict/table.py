@@ -113,10 +113,12 @@ def standstill_rows(ds: xr.Dataset) -> tuple[list[str], list[list[Any]]]:
 def _standstills_of(run: xr.Dataset) -> list[dict[str, Any]]:
     standstills = []
     for numbers in standstills_from_text(run[STANDSTILL_LIST.name].item() or "[]"):
-        standstill: dict[str, Any] = dict(zip(COLUMNS, numbers, strict=True))
+        standstill: dict[str, Any] = {"settled": 0.0} | dict(zip(COLUMNS, numbers, strict=False))
         end = float(run["followed_time"]) if math.isnan(standstill["end"]) else standstill["end"]
         standstill["held_by"] = Holding(int(standstill["holding"])).words
-        standstill["verdict"] = standing_verdict(standstill["free_advance"], standstill["driven_time"], end)
+        standstill["verdict"] = standing_verdict(
+            standstill["free_advance"], standstill["driven_time"], end, int(standstill["settled"])
+        )
         standstills.append(standstill)
     return standstills
 

@@ -140,6 +140,10 @@ _ZERO_FIELDS: Final = (
     Quantity("free_speed", "of free gears", Unit("pb/s")),
     Quantity("free_farthest", "largest size of `free_travel`", PITCHES),
     Quantity("free_before", "that at the end of the run before", PITCHES),
+    Quantity("free_mark", "`free_farthest` where that last grew, by a share", PITCHES),
+    Quantity("free_grown", "when it did", SECONDS),
+    Quantity("mark", "distance of the gear where that last grew, by a share", PITCHES),
+    Quantity("grown", "when it did", SECONDS),
     Quantity("onset", "when free gears have begun to move; 0 before", SECONDS),
     Quantity("excess", "largest torque of the drive at the gear beyond the dry load", TORQUE),
     Quantity("driven_time", "for which there was any", SECONDS),
@@ -159,6 +163,9 @@ _STANDSTILL_FIELDS: Final = (
     Quantity("excess", "as of a zero", TORQUE),
     Quantity("driven_time", "as of a zero", SECONDS),
     Quantity("rest_time", "at rest", SECONDS),
+    Quantity("since", "zero that it began with", SECONDS),
+    Quantity("breakaway", "drive torque at its end", TORQUE),
+    count("settled", "as in `STANDING_NOW`", high=2),
 )
 
 _STANDING_FIELDS: Final = (
@@ -190,6 +197,17 @@ _STANDING_FIELDS: Final = (
     Quantity("standing_rest", "at rest in all of these", SECONDS),
     Quantity("last_end", "end of the last of them", SECONDS),
     Quantity("breakaway", "drive torque then, or at the start", TORQUE),
+    Quantity("start_torque", "drive torque at the start", TORQUE),
+    Quantity("look_time", "when `mark` of the zeros is looked at next", SECONDS),
+    count("way", "sign of the speed at the last accepted time", low=-1, high=1),
+    count("held", "what friction held then", low=FREE, high=AT_REST),
+    Quantity("place", "of the gear at its last zero", PITCHES),
+    Quantity("place_time", "when that was", SECONDS),
+    flag("near", "1 as long as the gear is near that place"),
+    Quantity("near_time", "until when it was", SECONDS),
+    Quantity("near_position", "where it was then", PITCHES),
+    Quantity("slip_time", "when dry friction last let go", SECONDS),
+    Quantity("slip_position", "where the gear was then", PITCHES),
 )
 
 STATE_FIELDS: Final = (

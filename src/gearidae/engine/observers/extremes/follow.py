@@ -71,10 +71,10 @@ def note_present(m: Model, y: Floats) -> None:
 
 @compiled
 def resume(m: Model, t: float, y: Floats) -> None:
-    """Note that an event has brought the gear to rest, and that dry resistance holds it."""
+    """Note that the gear has been brought to rest at once, and that dry resistance holds it."""
     p = m.work.track.point[m.work.track.last]
     if m.scene.follow.gear != 0:
-        standing.resume(m, t, y, p.speed)
+        standing.resume(m, t, y)
     if y[W] <= 0.0 < p.speed:
         come_to_stand(m, t, y[PHASE] + m.state.turns, is_pulled_back(m, t, y))
     p.speed = y[W]
@@ -86,7 +86,9 @@ def resume(m: Model, t: float, y: Floats) -> None:
 def begin(m: Model, t: float, y: Floats, yp: Floats) -> None:
     """Go on from a start, where forces and accelerations may have jumped."""
     e, k = m.state.extremes, m.work.track
-    if e.begun == 0:
+    if e.begun != 0:
+        resume(m, t, y)  # what a knot or a creeping gear has changed, which no root has found
+    else:
         e.lowest_speed = e.highest_speed = y[W]
         e.separation = separation(m, y)
     k.time, k.last, k.smooth, k.next_part = t, 0, 1, next_part(m)

@@ -10,7 +10,7 @@ from gearidae.engine.compiling import SOLVER
 from gearidae.engine.formulas.interpolation import cubic, cubic_slope
 from gearidae.engine.model.addresses import model_at
 from gearidae.engine.model.checkpoint_record import HIGH, MOST_STANDSTILLS, SPARE
-from gearidae.engine.model.record_types import AT_REST, HELD_GEAR
+from gearidae.engine.model.record_types import AT_REST, FREE, HELD_GEAR
 from gearidae.engine.model.state import DRIVE, PHASE, STOPS, Floats, Model, Record, W
 from gearidae.engine.observers.standing.free_gears import follow_free
 from gearidae.engine.observers.standing.free_torques import (
@@ -27,17 +27,18 @@ from gearidae.engine.observers.standing.zeros import (
     drop_left,
     follow_zeros,
     free_advance,
-    last_slow,
+    look_at_distances,
     make_zero,
     note_slow,
+    settles,
     standing_since,
     stood_until,
 )
 from gearidae.engine.torques.schedule import straight_until
 from gearidae.records.standing import HALF_PITCH
 
-SLOWER: Final = 0.1
-"""Share of the speed at which a gear leaves half a pitch, below which it has not begun to."""
+NEAR: Final = 3.0
+"""Roughnesses along the line of action within which a gear is where it stood: the reach of asperities that cling."""
 LOOKS_AHEAD: Final = 4096
 """Times at most, besides knots of schedules, at which a run that is to stop looks at what is still to come."""
 _STICKS: Final = STOPS.index("sticks")
@@ -52,9 +53,10 @@ def begin(m: Model, t: float, y: Floats) -> None:
         s.low = position
         make_zero(m, HIGH, t * m.scene.time_unit, position, y, y[W] == 0.0)
         s.high_known = 1
-        s.breakaway = _drive_torque(m, HIGH, t)
+        s.breakaway = s.start_torque = _drive_torque(m, HIGH, t)
         if y[W] == 0.0:
             add_zero(m, t, position, y, True)
+        s.way, s.held = _sign(y[W]), m.state.hold
     elif y[W] == 0.0:
         follow_zeros(m, t)
     if s.direction >= 0 and position > s.zero[HIGH].position:
@@ -75,10 +77,15 @@ def step(m: Model, here: int, y: Floats) -> None:
     turned = now.speed_rate * last.speed_rate <= 0.0 and now.speed_rate != last.speed_rate
     if now.speed * last.speed <= 0.0 or (turned and _may_pass_zero(last, now)):
         _look_for_zeros(m, here, y, turned)
+    s.way = _sign(now.speed)
     if s.zero_count > 0:
         note_slow(m, now.time * unit, abs(now.speed) * m.scene.phase_rate / unit, now.position)
+        if s.near != 0 and abs(now.position - s.place) > NEAR * m.scene.phase_rate:
+            _go_away(m, last, now)
+        if now.time * unit >= s.look_time:
+            look_at_distances(m, now.time * unit, now.position)
         if abs(now.position - s.zero[0].position) > HALF_PITCH:
-            leave(m, now.time, now.speed, now.position)
+            leave(m, now.time, now.position)
     if s.direction >= 0 and s.high_known != 0 and now.position < s.zero[HIGH].position - HALF_PITCH:
         s.turn_time = now.time * unit if s.direction != 0 else 0.0
         s.direction, s.low = -1, now.position
@@ -95,13 +102,59 @@ def _may_pass_zero(last: Record, now: Record) -> bool:
     return bool(min(abs(last.speed), abs(now.speed)) <= bend)
 
 
+@compiled(inline=True)
+def _sign(speed: float) -> int:
+    return 1 if speed > 0.0 else -1 if speed < 0.0 else 0
+
+
 @compiled
-def resume(m: Model, t: float, y: Floats, before: float) -> None:
-    """Note that an event has brought the gear to rest, which had a speed before."""
-    if y[W] == 0.0 and before != 0.0:
-        add_zero(m, t, y[PHASE] + m.state.turns, y, False)
+def resume(m: Model, t: float, y: Floats) -> None:
+    """Note that something has brought the gear to rest or turned it round at once, or that dry friction has let go.
+
+    A change of what is held that is not the rest of all of it lets something go.
+    """
+    s, sign, position = m.state.standing, _sign(y[W]), y[PHASE] + m.state.turns
+    if s.way != 0 and sign != s.way:
+        add_zero(m, t, position, y, False)
         if m.scene.stop == _STICKS:
             plan_stop(m, t)
+    s.way = sign
+    if s.held != FREE and m.state.hold != s.held and m.state.hold != AT_REST:
+        s.slip_time, s.slip_position = t * m.scene.time_unit, position
+    s.held = m.state.hold
+
+
+@compiled
+def _go_away(m: Model, last: Record, now: Record) -> None:
+    """Note when the gear has gone away from its last zero, within a step that may contain both."""
+    s, unit, rate = m.state.standing, m.scene.time_unit, m.scene.phase_rate
+    h = now.time - last.time
+    low, high = min(max((s.place_time / unit - last.time) / h, 0.0), 1.0), 1.0
+    for _ in range(_BISECTIONS):
+        middle = 0.5 * (low + high)
+        position = cubic(middle, h, last.position, rate * last.speed, now.position, rate * now.speed)
+        if abs(position - s.place) > NEAR * rate:
+            high = middle
+        else:
+            low = middle
+    s.near, s.near_time = 0, (last.time + high * h) * unit
+    s.near_position = cubic(high, h, last.position, rate * last.speed, now.position, rate * now.speed)
+
+
+@compiled(inline=True)
+def _break_away(m: Model, t: float, position: float) -> tuple[float, float]:
+    """When [s] and where the gear broke away that leaves half a pitch now.
+
+    With the last slip near where it stood; where none has been since the last zero of its speed, as it went away from
+    there. Neither depends on how fast the torque rises, as the speed does.
+    """
+    s = m.state.standing
+    slipped = s.slip_time >= s.place_time and abs(s.slip_position - s.place) <= NEAR * m.scene.phase_rate
+    if slipped and s.slip_time > 0.0:
+        return s.slip_time, s.slip_position
+    if s.near != 0:
+        return t * m.scene.time_unit, position
+    return s.near_time, s.near_position
 
 
 @compiled
@@ -155,38 +208,38 @@ def _add_between(m: Model, last: Record, now: Record, y: Floats, low: float, hig
 
 
 @compiled_once(SOLVER)
-def leave(m: Model, t: float, speed: float, position: float) -> None:
+def leave(m: Model, t: float, position: float) -> None:
     """Leave half a pitch from the first zero: note the standstill that lies behind, if there is one."""
-    s, unit = m.state.standing, m.scene.time_unit
-    time, place = last_slow(m, SLOWER * abs(speed) * m.scene.phase_rate / unit)
-    i = standing_since(m, time, place, m.scene.end * unit)
-    if i >= 0:
-        if s.zero[i].spent == 0:
-            z = s.zero[SPARE]
-            _note_standstill(m, i, time, distance(z, place), free_advance(z, time))
-    else:
-        note_stood(m, time)
+    note_stood(m, t, position)
     drop_left(m, position)
     if m.scene.stop == _STICKS:
         plan_stop(m, t)
 
 
 @compiled
-def note_stood(m: Model, limit: float) -> None:
-    """Note a standstill that has ended before a time [s] as the gear began to move as free gears do."""
-    s, i = m.state.standing, 0
+def note_stood(m: Model, t: float, position: float) -> None:
+    """Note a standstill that has ended: as the gear broke away, or as it began to move as free gears do."""
+    s, i, length = m.state.standing, 0, m.scene.end * m.scene.time_unit
+    limit, place = _break_away(m, t, position)
+    stood = standing_since(m, limit, place, length)
+    if stood >= 0:
+        if s.zero[stood].spent == 0:
+            z = s.zero[SPARE]
+            ways = distance(z, place), free_advance(z, limit)
+            _note_standstill(m, stood, limit, ways, settles(z, limit, place))
+        return
     while i < s.zero_count:
         if s.zero[i].spent == 0 and s.zero[i].time < limit:
-            time, way, free = stood_until(m, i, limit, m.scene.end * m.scene.time_unit)
+            time, way, free = stood_until(m, i, limit, length)
             if time > 0.0:
-                _note_standstill(m, i, time, way, free)
+                _note_standstill(m, i, time, (way, free), 0)
                 return
         i += 1
 
 
 @compiled
-def _note_standstill(m: Model, i: int, time: float, way: float, free: float) -> None:
-    """Note a standstill from zero `i` to a time [s]; of the drive since then `SPARE` knows."""
+def _note_standstill(m: Model, i: int, time: float, ways: tuple[float, float], settled: int) -> None:
+    """Note a standstill from zero `i` to a time [s], with the advances; of the drive since then `SPARE` knows."""
     s = m.state.standing
     z, drive = s.zero[i], s.zero[SPARE]
     start, rest = standstill_begin(m, z), s.rest_time - z.rest_time
@@ -212,7 +265,9 @@ def _note_standstill(m: Model, i: int, time: float, way: float, free: float) -> 
     else:
         s.stand_count += 1
     kept = s.standstill[at]
-    kept.begin, kept.end, kept.advance, kept.free_advance = start, time, way, free
+    kept.begin, kept.end, kept.settled = start, time, settled
+    kept.advance, kept.free_advance = ways
+    kept.since, kept.breakaway = z.time, s.breakaway
     kept.excess, kept.driven_time, kept.rest_time = drive.excess, drive.driven_time, min(rest, time - start)
 
 
@@ -280,21 +335,27 @@ def _hardest(m: Model, t: float) -> float:
 
 
 @compiled
-def _standing_zero(m: Model, time: float, position: float) -> int:
-    """Zero from which the gear stands at an end [s] at a position; -1 if none, and a standstill before is noted."""
-    i = standing_since(m, time, position, time) if m.state.standing.zero_count > 0 else -1
+def _standing_zero(m: Model, t: float, position: float) -> int:
+    """Zero from which the gear stands at an end at a position; -1 if none, and a standstill before is noted."""
+    if m.state.standing.zero_count == 0:
+        return -1
+    time = t * m.scene.time_unit
+    i = standing_since(m, time, position, time)
     if i < 0:
-        note_stood(m, time)
+        note_stood(m, t, position)
     return i
 
 
-STANDING_NUMBERS: Final = 17
+STANDING_NUMBERS: Final = 18
 """Numbers that `standing_at` leaves, in the order in which it writes them."""
 
 
 @compiled
 def standing_at(place: int, t: float, y: Floats, out: Floats) -> None:
     """Say where the gear stands if the run ends here, and how far it has gone back.
+
+    A standstill that has ended then is noted, and is to be forgotten if the run does not end. The free gears of a zero
+    are followed for good only where a standstill cannot have ended before.
 
     Parameters
     ----------
@@ -310,17 +371,21 @@ def standing_at(place: int, t: float, y: Floats, out: Floats) -> None:
     m = model_at(place)
     s, time, position = m.state.standing, t * m.scene.time_unit, y[PHASE] + m.state.turns
     out[:] = 0.0
-    i = _standing_zero(m, time, position)
+    i = _standing_zero(m, t, position)
     out[0] = 1.0 if i >= 0 else 0.0
     if s.zero_count > 0:
-        follow_free(m, max(i, 0), t, math.inf)
-        z = s.zero[max(i, 0)]
+        if _break_away(m, t, position)[0] >= time:
+            follow_free(m, max(i, 0), t, math.inf)
+        copy_zero(m, SPARE, max(i, 0))
+        follow_free(m, SPARE, t, math.inf)
+        z = s.zero[SPARE]
         never = s.left == 0 and s.zero[0].start != 0
         out[1], out[2] = s.zero[0].time if never else z.time, float(s.zero[0].exits if never else z.exits)
         out[3], out[4] = distance(z, position), free_advance(z, time)
         out[5], out[6] = z.driven_time, z.excess
         out[7], out[8] = s.rest_time - z.rest_time, standstill_begin(m, z)
-        out[9] = excess(m, max(i, 0), t) * m.scene.force_unit * m.scene.gear_radius
+        out[17] = settles(z, time, position)
+        out[9] = excess(m, SPARE, t) * m.scene.force_unit * m.scene.gear_radius
     if s.direction < 0:
         follow_free(m, HIGH, t, math.inf)
         high = s.zero[HIGH]
@@ -338,11 +403,14 @@ def settle_standing_at(place: int, t: float, y: Floats) -> None:
     """
     m = model_at(place)
     s, time, position = m.state.standing, t * m.scene.time_unit, y[PHASE] + m.state.turns
-    _standing_zero(m, time, position)
+    _standing_zero(m, t, position)
+    broken = min(_break_away(m, t, position)[0] / m.scene.time_unit, t)
     s.slow_count = 0
     note_slow(m, time, abs(y[W]) * m.scene.phase_rate / m.scene.time_unit, position)
     for i in range(s.zero_count):
-        s.zero[i].free_before = s.zero[i].free_farthest
+        copy_zero(m, SPARE, i)
+        follow_free(m, SPARE, broken, math.inf)
+        s.zero[i].free_before = s.zero[SPARE].free_farthest
         follow_free(m, i, t, math.inf)
     if s.direction < 0:
         follow_free(m, HIGH, t, math.inf)

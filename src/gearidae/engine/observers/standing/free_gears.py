@@ -24,6 +24,7 @@ from gearidae.engine.observers.standing.free_torques import (
     largest_excess,
 )
 from gearidae.engine.torques.schedule import straight_until
+from gearidae.records.standing import GROWS
 
 TOLERANCE: Final = 1e-5
 """Relative error of speed and travel in a step; of the travel also this many tenths of a pitch."""
@@ -91,6 +92,8 @@ def _follow_piece(m: Model, i: int, t: float, stop: float, enough: float) -> flo
         _accumulate_drive(m, i, t, after)
         t, x, w = after, new_x, new_w
         z.free_farthest = max(z.free_farthest, abs(x))
+        if z.free_farthest > (1.0 + GROWS) * z.free_mark:
+            z.free_mark, z.free_grown = z.free_farthest, t * m.scene.time_unit
         h *= min(5.0, 0.8 * max(error, 1e-6) ** (-1.0 / 3.0))
     z.free_travel, z.free_speed = x, w * unit
     return t

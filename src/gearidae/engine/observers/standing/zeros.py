@@ -16,7 +16,7 @@ from gearidae.engine.model.checkpoint_record import HIGH, MOST_SLOW, MOST_ZEROS,
 from gearidae.engine.model.state import DRIVE, PHASE, Floats, Model, Record, U
 from gearidae.engine.observers.standing.free_gears import follow_free
 from gearidae.engine.pairs.tooth_pairs import static_error
-from gearidae.records.standing import HALF_PITCH, SHARE, stands
+from gearidae.records.standing import GROWS, HALF_PITCH, SETTLED_WITHIN, SHARE, stands
 
 DECIDED: Final = 2.0 * HALF_PITCH
 """Pitches of free gears from which on a gear stands that has stayed within half a pitch."""
@@ -25,6 +25,8 @@ SELDOM: Final = 1e-3
 _PLACE: Final = 1.0 / 32.0
 _ALIKE: Final = 1e-3
 """Pitches between zeros in the same place, and between distances that are the same."""
+_LOOKS: Final = 1.0 / 64.0
+"""Share of the time since the first zero after which the distances of a gear that creeps are looked at again."""
 _FASTER: Final = 1.1
 """Ratio of the speeds of two entries among the slow times: 32 of them go over more than a factor of ten."""
 
@@ -46,7 +48,8 @@ def make_zero(m: Model, i: int, t: float, position: float, y: Floats, at_start: 
     z.start = 1 if at_start else 0
     z.spent = 0
     z.rest_time = m.state.standing.rest_time
-    z.free_travel = z.free_speed = z.free_farthest = z.free_before = 0.0
+    z.free_travel = z.free_speed = z.free_farthest = z.free_before = z.free_mark = z.mark = 0.0
+    z.free_grown = z.grown = t
     z.onset = z.excess = z.driven_time = 0.0
 
 
@@ -62,9 +65,13 @@ def add_zero(m: Model, t: float, position: float, y: Floats, at_start: bool) -> 
     s, time = m.state.standing, t * m.scene.time_unit
     note_slow(m, time, 0.0, position)
     _note_turn(m, time, position, y)
+    s.place = s.near_position = position
+    s.place_time = s.near_time = time
+    s.near = 1
     for i in range(s.zero_count):
         z = s.zero[i]
         z.lowest, z.highest = min(z.lowest, position), max(z.highest, position)
+    look_at_distances(m, time, position)
     if s.zero_count > 0 and s.zero[0].free_farthest > DECIDED:
         # whatever comes, from the first on the gear stands until it leaves; from then on others count
         if time - s.zero[0].free_time > SELDOM * (m.scene.end - m.scene.start) * m.scene.time_unit:
@@ -82,6 +89,32 @@ def add_zero(m: Model, t: float, position: float, y: Floats, at_start: bool) -> 
         if _is_needless(m, i):
             _drop(m, i)
         i -= 1
+
+
+@compiled
+def look_at_distances(m: Model, time: float, position: float) -> None:
+    """Note how far the gear has been from each zero until a time [s], and when it looks again."""
+    s = m.state.standing
+    for i in range(s.zero_count):
+        z = s.zero[i]
+        way = distance(z, position)
+        if way > (1.0 + GROWS) * z.mark:
+            z.mark, z.grown = way, time
+    if s.zero_count > 0:
+        s.look_time = time + _LOOKS * (time - s.zero[0].time)
+
+
+@compiled
+def settles(z: Record, time: float, position: float) -> int:
+    """Whether free gears have settled since a zero, followed to a time [s]: 1, or 2 if the gear has as well.
+
+    They go no farther than a pitch, and no farther in the second half of the time than in the first.
+    """
+    half = 0.5 * (time - z.time)
+    if free_advance(z, time) > SETTLED_WITHIN or z.free_grown - z.time > half:
+        return 0
+    rests = z.grown - z.time <= half and distance(z, position) <= (1.0 + GROWS) * z.mark
+    return 2 if rests else 1
 
 
 @compiled
@@ -184,7 +217,8 @@ def standing_since(m: Model, time: float, position: float, length: float) -> int
         copy_zero(m, SPARE, i)
         z = s.zero[SPARE]
         follow_free(m, SPARE, time / m.scene.time_unit, math.inf)
-        if _stands(distance(z, position), free_advance(z, time), time - z.time, length):
+        together = settles(z, time, position) == 2
+        if _stands(distance(z, position), free_advance(z, time), time - z.time, length, together):
             return i
     return -1
 
@@ -212,7 +246,7 @@ def stood_until(m: Model, i: int, limit: float, length: float) -> tuple[float, f
         follow_free(m, SPARE, point.time / tau, math.inf)
         way, free = distance(z, point.position), z.free_farthest
         margin = 0.5 * free - way
-        if _stands(way, free, point.time - z.time, length):
+        if _stands(way, free, point.time - z.time, length, False):
             end, advance, before = point.time, way, margin
         elif before >= 0.0:
             share = before / (before - margin)
@@ -236,7 +270,7 @@ def free_advance(z: Record, time: float) -> float:
 
 @compiled
 def note_slow(m: Model, time: float, speed: float, position: float) -> None:
-    """Note the speed at an accepted time, to know later when the gear was last slower than a speed."""
+    """Note the speed at an accepted time: the way of the gear since it was last as slow is known later."""
     s = m.state.standing
     n = s.slow_count
     while n > 0 and s.slow[n - 1].speed >= speed:
@@ -250,21 +284,3 @@ def note_slow(m: Model, time: float, speed: float, position: float) -> None:
         n -= 1
     s.slow[n].time, s.slow[n].speed, s.slow[n].position = time, speed, position
     s.slow_count = n + 1
-
-
-@compiled
-def last_slow(m: Model, speed: float) -> tuple[float, float]:
-    """Time [s] and position [pb] at which the gear was last slower than a speed [pb/s]."""
-    s = m.state.standing
-    k = s.slow_count - 1
-    while k > 0 and s.slow[k].speed >= speed:
-        k -= 1
-    last = s.slow[k]
-    if last.speed >= speed or k == s.slow_count - 1:
-        return last.time, last.position
-    after = s.slow[k + 1]
-    share = (speed - last.speed) / (after.speed - last.speed)
-    return (
-        last.time + share * (after.time - last.time),
-        last.position + share * (after.position - last.position),
-    )
