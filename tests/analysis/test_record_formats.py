@@ -66,7 +66,7 @@ def test_times_as_dates(tmp_path):
     same(read_signal(tmp_path / "a.nc"))
     same(read_signal(pd.DataFrame({"time": dates, "gear_speed [rad/s]": SPEED})))
     spectrum = gd.analysis.power_spectrum(ds["gear_speed"])
-    assert float(spectrum["frequency"][int(spectrum.argmax())]) == pytest.approx(300.0, rel=0.05)
+    assert float(spectrum["frequency"][int(spectrum.values.argmax())]) == pytest.approx(300.0, rel=0.05)
 
 
 def test_remarks_and_cells_that_look_like_them(tmp_path):

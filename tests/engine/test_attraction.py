@@ -162,7 +162,7 @@ def test_estimates_have_it_too():
     """The static law of a pair and the drawn teeth pull as the run does."""
     scene = GEARS.replace({"coating.thickness": 0.0, "coating.hamaker": HAMAKER})
     from gearidae.mesh.pair_contact import pair_contact
-    from gearidae.studies.equilibrium import pair_law
+    from gearidae.runs.equilibrium import pair_law
 
     contact = pair_contact(scene)
     gap = 60e-9  # ten roughnesses

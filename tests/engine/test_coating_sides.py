@@ -173,7 +173,7 @@ def test_estimates_count_every_material_at_its_own_gap():
     """The resting gap carries the load by the readable law of each material."""
     from gearidae.contact.line import line_force
     from gearidae.mesh.pair_contact import pair_contact
-    from gearidae.studies.equilibrium import pair_law
+    from gearidae.runs.equilibrium import pair_law
 
     scene = coated(LOW, 0.3, 0.5, thickness="1 nm")
     contact = pair_contact(scene)

@@ -24,6 +24,7 @@ def model(torques=None):
     lines = np.array([1.0]) if torques is None else np.array(torques)
     return MapModel(
         fractions=FRACTIONS,
+        known=FRACTIONS,
         torques=None if torques is None else lines,
         sequences=np.stack([sequences(line) for line in lines]),
         spread=np.zeros((len(lines), len(FRACTIONS))),

@@ -5,7 +5,7 @@ import math
 import pytest
 
 import gearidae as gd
-from gearidae.studies.equilibrium import contact_resonance
+from gearidae.runs.equilibrium import contact_resonance
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 1e-3})
 ENGINE = gd.load_case("cases/microengine.toml").replace({"run.duration": 1e-4})

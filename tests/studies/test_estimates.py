@@ -13,9 +13,9 @@ from gearidae.asperities.tip import asperity_of
 from gearidae.contact import line_force
 from gearidae.contact.psi import psi
 from gearidae.mesh.involute import curvature_radii
+from gearidae.runs.equilibrium import natural_frequency
 from gearidae.runs.estimates import effective_mass, resting_gap, steady_speed
 from gearidae.runs.rubbing import flank_coefficient
-from gearidae.studies.equilibrium import natural_frequency
 
 LOW = gd.preset("teodorescu2009_low_speed")
 HIGH = gd.preset("teodorescu2009")

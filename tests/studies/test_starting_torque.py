@@ -12,11 +12,11 @@ import gearidae as gd
 from gearidae.analysis import starting_torque, static_starting_torque
 from gearidae.contact import line_force
 from gearidae.mesh.friction import starting_ratio
+from gearidae.runs.equilibrium import leaving_radii, pair_law
+from gearidae.runs.release import holding_forces
 from gearidae.runs.running import unsolved
 from gearidae.studies import _starting_torque
 from gearidae.studies.declared.starting_torque import STUDY
-from gearidae.studies.equilibrium import leaving_radii, pair_law
-from gearidae.studies.release import holding_forces
 
 SCENE = gd.preset("teodorescu2009_low_speed")
 FORCE = SCENE.drive.torque / SCENE.gears.pinion_base_radius

@@ -20,11 +20,11 @@ if TYPE_CHECKING:
     from gearidae.analysis.ringing import impact_spectrum as impact_spectrum
     from gearidae.analysis.spectra import power_spectrum as power_spectrum
     from gearidae.analysis.spectra import spectrogram as spectrogram
+    from gearidae.runs.equilibrium import contact_resonance as contact_resonance
     from gearidae.studies._starting_torque import starting_torque as starting_torque
     from gearidae.studies._starting_torque import static_starting_torque as static_starting_torque
     from gearidae.studies._tooth_contacts import tooth_contacts as tooth_contacts
     from gearidae.studies.declared.coating_map import coating_map as coating_map
-    from gearidae.studies.equilibrium import contact_resonance as contact_resonance
     from gearidae.studies.products import open_map as open_map
 
 __getattr__, __dir__, __all__ = lazy_names(__name__)

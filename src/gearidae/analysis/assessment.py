@@ -18,6 +18,7 @@ import xarray as xr
 
 from gearidae.analysis import record_checks
 from gearidae.analysis.assessment_words import (
+    below_map,
     calibration_words,
     listed,
     lone_words,
@@ -47,6 +48,8 @@ _PLAIN = 0.1
 """Intervals wider than this say nothing about the coating."""
 _GAP = 0.02
 """Fractions further apart than this, with none in between that explains the signal, are different answers."""
+_COARSE = 0.1
+"""Distance of the map's own fractions up to which what lies between is known by interpolation, see `map_model`."""
 _FEWEST_TO_TELL_START = 2
 """With fewer impacts the frequencies cannot contradict that the record begins with the map's start."""
 _SAME_START, _SAME_START_ALONE = 0.1, 0.04
@@ -309,6 +312,8 @@ def _read(fit: Fit, model: MapModel, rings: RingSet, silent: Assessment, rate: f
         return replace(silent, verdict=verdict, explanation=why + too_slow)
     if another:
         return replace(silent, verdict="does not fit", explanation=another)
+    if why := below_map(fit, model, rings):
+        return replace(silent, verdict="outside the map", explanation=why + too_slow)
     fractions, possible = fit.fractions, fit.possible
     # the grid is finite: an interval is never narrower than its spacing
     spacing = float(fractions[1] - fractions[0])
@@ -324,6 +329,14 @@ def _read(fit: Fit, model: MapModel, rings: RingSet, silent: Assessment, rate: f
         )
         return replace(answer, verdict="ambiguous", explanation=why)
     fraction = float(fractions[fit.best])
+    above, below = model.known[model.known > fraction], model.known[model.known < fraction]
+    if above.size and below.size and above[0] - below[-1] > _COARSE:
+        why = (
+            f"impacts ring at {at} Hz, as between {below[-1]:.3g} and {above[0]:.3g}, where the map has no coverage: "
+            f"one with steps of {_COARSE:g} or less can tell"
+        )
+        low, high = min(low, float(below[-1])), max(high, float(above[0]))
+        return replace(answer, low=low, high=high, verdict="ambiguous", explanation=why)
     since = "counted from the start" if fit.history == "start" else "the start not being in the record"
     why = f"SAM fraction {fraction:.3f} (95 %: {low:.3f} to {high:.3f}); impacts ring at {at} Hz, {since}"
     why += torque_words(fit, model, rings) + too_slow

@@ -38,6 +38,8 @@ class MapModel:
     ----------
     fractions : ndarray, shape (n,)
         Rising [1].
+    known : ndarray, shape (k,)
+        Those of the map at which impacts ring, on all of its lines [1].
     torques : ndarray, shape (m,), or None
         Drive torques of the map's lines, rising [N m]; None for a map at one torque.
     sequences : ndarray, shape (m or 1, n, BEFORE + impacts + AFTER)
@@ -57,6 +59,7 @@ class MapModel:
     """
 
     fractions: Floats
+    known: Floats
     torques: Floats | None
     sequences: Floats
     spread: Floats
@@ -179,6 +182,7 @@ def map_model(chart: object) -> MapModel:
         raise SceneError("map", "(dataset)", "needs at least two fractions at which the gear turns")
     return MapModel(
         fractions=fractions,
+        known=known[np.isfinite(frequency[:, :, 0]).all(axis=0)],
         torques=torques,
         sequences=np.stack([_sequences(fractions, known, table) for table in frequency]),
         spread=np.stack([_spread(fractions, known, table) for table in frequency]),

@@ -192,11 +192,11 @@ def _from_netcdf(source: Path, wanted: Wanted) -> xr.Dataset:
 def _from_frame(frame: Any, wanted: Wanted, step: float | None) -> xr.Dataset:
     if not (hasattr(frame, "columns") and hasattr(frame, "reset_index")):
         raise ValueError("must be a file, a DataFrame, a Dataset or a DataArray")
-    if frame.index.name is not None or frame.index.dtype.kind == "m":
+    if frame.index.name is not None or frame.index.dtype.kind in "mM":
         frame = frame.rename_axis(frame.index.name or "time").reset_index()
     kinds = [dtype.kind for dtype in frame.dtypes]
     names = [
-        f"{name} [s]" if kind == "m" and not split_unit(str(name))[1] else str(name)
+        f"{name} [s]" if kind in "mM" and not split_unit(str(name))[1] else str(name)
         for name, kind in zip(frame.columns, kinds, strict=True)
     ]
     columns = find_columns(names, wanted)

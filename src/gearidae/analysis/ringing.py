@@ -14,19 +14,23 @@ Teodorescu et al. 2009 (doi:10.1016/j.triboint.2008.05.019), Figs. 9 and 10.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import scipy
 import xarray as xr
+from numpy.typing import NDArray
 
 from gearidae.analysis.impacts import LEAD, WIDTH, check_width, lowest_frequency, windows_of
 from gearidae.analysis.signal import FEWEST_SAMPLES, Signal, signals, stack
 from gearidae.arrays import Floats
+from gearidae.scene.prefixes import with_prefix
 
 HIGHEST = 0.42
 """Ringing above this part of the sampling rate is left out: it could be the image of something still faster."""
+_FEWEST_TURNINGS = 4
+"""Of a pair's gap within a window, for its frequency."""
 
 _PADDING = 8
 _PROMINENCE = math.log(4.0)
@@ -54,6 +58,8 @@ class Ring:
         Of the ring, averaged over its window, in the unit of the signal.
     noise : float
         Standard deviation of the white noise in the window, in the unit of the signal.
+    own : float
+        Frequency of the contact itself in the window [Hz], from the turning points of the run's events; NaN if unknown.
     """
 
     time: float
@@ -61,6 +67,7 @@ class Ring:
     uncertainty: float = math.nan
     amplitude: float = math.nan
     noise: float = math.nan
+    own: float = math.nan
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +98,8 @@ def characteristic_frequency(
     Returns
     -------
     DataArray, dims (...)
-        Frequency [Hz]; NaN if no impact rings. Coordinates along the same dimensions: ``uncertainty`` [Hz], the
+        Frequency [Hz]; NaN if no impact rings, or the first does so faster than the sampling shows, which the attribute
+        ``note`` says. Coordinates along the same dimensions: ``uncertainty`` [Hz], the
         standard uncertainty, and ``impacts``, the number of impacts that ring.
 
     Raises
@@ -106,7 +114,8 @@ def characteristic_frequency(
     """
     frequencies = impact_frequencies(data, width=width, gear_teeth=gear_teeth)
     ringing = np.isfinite(frequencies["frequency"].values)
-    first = ringing.argmax(axis=-1) if ringing.shape[-1] else np.zeros(ringing.shape[:-1], dtype=np.int64)
+    known = ringing | _hidden(frequencies)
+    first = known.argmax(axis=-1) if known.shape[-1] else np.zeros(ringing.shape[:-1], dtype=np.int64)
     picked = {}
     for name in ("frequency", "uncertainty"):
         values = frequencies[name].values
@@ -134,7 +143,11 @@ def characteristic_frequency(
         attrs={
             "long_name": "frequency of the first impact response",
             "units": "Hz",
-            **{key: frequencies.attrs[key] for key in ("window", "lead", "width", "sampling_rate")},
+            **{
+                key: frequencies.attrs[key]
+                for key in ("window", "lead", "width", "sampling_rate", "note")
+                if key in frequencies.attrs
+            },
         },
     )
 
@@ -153,7 +166,9 @@ def impact_frequencies(
     -------
     Dataset, dims (..., impact)
         ``frequency`` and its standard ``uncertainty`` [Hz], ``impact_time`` [s]. NaN where nothing stands out of the
-        noise, and from where the ringing has risen so far that the sampling no longer shows it.
+        noise, and where the contact rings faster than the sampling shows: what is seen there are aliases. Then an
+        attribute ``note`` says so. Of a run whose events are kept, ``contact_frequency`` [Hz] is that of the contact
+        itself, from the times at which the gap turns round; else the ringing is followed from impact to impact.
 
     Raises
     ------
@@ -166,10 +181,12 @@ def impact_frequencies(
         "frequency": ("frequency of the impact response", {"units": "Hz"}),
         "uncertainty": ("standard uncertainty of the frequency", {"units": "Hz"}),
         "time": ("time of the mesh impact", {"units": "s"}),
+        "own": ("frequency of the contact by its turning points", {"units": "Hz"}),
     }
-    return xr.Dataset(
+    names = {"time": "impact_time", "own": "contact_frequency"}
+    ds = xr.Dataset(
         {
-            "impact_time" if name == "time" else name: stack(
+            names.get(name, name): stack(
                 batch,
                 "impact",
                 [np.array([getattr(ring, name) for ring in rings]) for rings in responses],
@@ -187,6 +204,20 @@ def impact_frequencies(
             "sampling_rate": batch.signals[0].rate,
         },
     )
+    hidden = _hidden(ds)
+    if hidden.any():
+        rate, fastest = batch.signals[0].rate, float(np.nanmax(ds["contact_frequency"].values))
+        ds.attrs["note"] = (
+            f"contacts ring at up to {with_prefix(fastest, 'Hz', 3)}: sampled at {with_prefix(rate, 'Hz', 3)}, "
+            f"{hidden.sum()} of {hidden.size} responses may be aliases; they need "
+            f'{with_prefix(fastest / HIGHEST, "Hz", 3)} (run.samples = "ringing")'
+        )
+    return ds
+
+
+def _hidden(frequencies: xr.Dataset) -> NDArray[np.bool_]:
+    """Where the contact itself rings faster than the sampling shows."""
+    return np.asarray(frequencies["contact_frequency"].values > HIGHEST * frequencies.attrs["sampling_rate"])
 
 
 def impact_spectrum(
@@ -263,17 +294,42 @@ def rings_of(signal: Signal, width: float) -> list[Ring]:
         One for each impact in the record.
     """
     teeth = signal.gear_teeth or 0
-    rings = [_ring(signal, row, teeth) for row in windows_of(signal, width)]
+    rings = [
+        replace(_ring(signal, row, teeth), own=_own_frequency(signal, row))
+        for row in windows_of(signal, width)
+    ]
     highest = HIGHEST * signal.rate
     before, expected = math.nan, 0.0
     for number, ring in enumerate(rings):
+        if ring.own > highest:
+            rings[number] = Ring(ring.time, own=ring.own)
+            continue
+        if math.isfinite(ring.own):
+            continue  # the contact is seen to ring no faster
         if ring.frequency > highest or expected > highest:
             # from here on the ringing is faster than the sampling shows; what is seen are images
-            return [*rings[:number], *(Ring(later.time) for later in rings[number:])]
+            return [*rings[:number], *(Ring(later.time, own=later.own) for later in rings[number:])]
         if math.isfinite(ring.frequency):
             growth = ring.frequency / before if before < ring.frequency else 1.0
             before, expected = ring.frequency, ring.frequency * growth
     return rings
+
+
+def _own_frequency(signal: Signal, window: Floats) -> float:
+    """Frequency at which the gap of a pair oscillates in a window [Hz]: half its turning points over their time.
+
+    Of several pairs in mesh that counts which turns round most often. NaN where events are not known, or too few.
+    """
+    if signal.turnings is None or math.isnan(window[1]):
+        return math.nan
+    times, pairs = signal.turnings.T
+    inside = (times >= window[1]) & (times <= window[2])
+    fastest = math.nan
+    for pair in np.unique(pairs[inside]):
+        at = times[inside & (pairs == pair)]
+        if len(at) >= _FEWEST_TURNINGS and at[-1] > at[0]:
+            fastest = np.fmax(fastest, 0.5 * (len(at) - 1) / float(at[-1] - at[0]))
+    return float(fastest)
 
 
 def _ring(signal: Signal, window: Floats, teeth: int) -> Ring:

@@ -47,6 +47,8 @@ class Signal:
         Samples, finite; a run that ended early is cut where it ended.
     exits : ndarray, shape (m,), or None
         Times at which tooth pairs left the mesh on the drive flank [s]; None if no events are known.
+    turnings : ndarray, shape (k, 2), or None
+        Times at which the gaps of tooth pairs turned round [s], and which pairs these are; None if no events are known.
     gear_teeth : int or None
         Teeth of the gear, if the scene is known.
     calibration : float
@@ -59,6 +61,7 @@ class Signal:
     exits: Floats | None = None
     gear_teeth: int | None = None
     calibration: float = CALIBRATION
+    turnings: Floats | None = None
 
     @property
     def time(self) -> Floats:
@@ -150,7 +153,8 @@ def signals(
     start, samples = start + late * interval, samples[..., late:]
     dims = tuple(str(dim) for dim in array.dims[:-1])
     teeth = gear_teeth if gear_teeth is not None else _gear_teeth(data.attrs)
-    exits = _exits_of(data, array, dims)
+    nothing = Signal(start, interval, np.empty(0), gear_teeth=teeth)
+    events = _events_of(data, array, dims, nothing)
     return Batch(
         name=name,
         units=units,
@@ -158,7 +162,7 @@ def signals(
         shape=samples.shape[:-1],
         coords={str(key): value for key, value in array.coords.items() if "time" not in value.dims},
         signals=tuple(
-            Signal(start, interval, _until_end(samples[place], name, time, late), exits(place), teeth)
+            replace(events(place), values=_until_end(samples[place], name, time, late))
             for place in np.ndindex(samples.shape[:-1])
         ),
     )
@@ -284,26 +288,39 @@ def _gear_teeth(attrs: Mapping[Any, Any]) -> int | None:
         return None
 
 
-def _exits_of(
-    data: xr.Dataset | xr.DataArray, array: xr.DataArray, dims: tuple[str, ...]
-) -> Callable[[tuple[int, ...]], Floats | None]:
-    """Return the source of the mesh exits of the run at a place among the swept dimensions."""
-    names = ("event_time", "event_kind", "event_flank")
-    if not isinstance(data, xr.Dataset) or not all(name in data for name in names):
-        return lambda _: None
-    time, kind, flank = (data[name].values for name in names)
+def _events_of(
+    data: xr.Dataset | xr.DataArray, array: xr.DataArray, dims: tuple[str, ...], nothing: Signal
+) -> Callable[[tuple[int, ...]], Signal]:
+    """Return the source of what the events say of the run at a place among the swept dimensions.
+
+    Parameters
+    ----------
+    nothing : Signal
+        Without events and samples.
+    """
+    names = ("event_time", "event_kind", "event_flank", "event_pair")
+    if not isinstance(data, xr.Dataset) or not all(name in data for name in names[:3]):
+        return lambda _: nothing
+    time, kind, flank = (data[name].values for name in names[:3])
     leaving = (kind == EventKind.MESH_EXIT) & (flank == Flank.DRIVE)
+    turning = kind == EventKind.TURNING_POINT
+    pair = 2 * data["event_pair"].values + flank if "event_pair" in data else None
     labels = {
         str(key): data[f"event_{key}"].values
         for key in array.coords
         if f"event_{key}" in data and key != "time"
     }
 
-    def exits(place: tuple[int, ...]) -> Floats | None:
+    def events(place: tuple[int, ...]) -> Signal:
         run = array.isel(dict(zip(dims, place, strict=True)))
-        of_run = leaving.copy()
+        of_run = np.ones(len(time), np.bool_)
         for key, label in labels.items():
             of_run &= label == run[key].values.item()
-        return np.asarray(time[of_run], dtype=np.float64)
+        turned = of_run & turning
+        return replace(
+            nothing,
+            exits=np.asarray(time[of_run & leaving], dtype=np.float64),
+            turnings=None if pair is None else np.column_stack([time[turned], pair[turned]]),
+        )
 
-    return exits
+    return events

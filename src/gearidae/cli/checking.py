@@ -85,8 +85,8 @@ def _geometry(scene: Scene) -> Rows:
 
 
 def _estimates(scene: GearScene) -> Rows:
+    from gearidae.runs.equilibrium import natural_frequency
     from gearidae.runs.estimates import effective_mass, resting_gap, steady_speed
-    from gearidae.studies.equilibrium import natural_frequency
 
     yield "Estimates", "", "from the mean torques over the run, without sticking"
     speed = steady_speed(scene)
@@ -198,14 +198,21 @@ def _coating(scene: Scene) -> Rows:
 
 
 def _run(scene: Scene) -> Rows:
+    from gearidae.runs.ringing_samples import ringing_samples
+
+    needed = ringing_samples(scene)
     run = scene.run
+    count = (needed or 0) if run.samples == "ringing" else run.sample_count
     yield "Run", "", ""
     yield "duration", f"{run.duration * 1e3:g} ms", ""
     expected = run_time(scene)
     numbers = 1 + len(columns_of(scene))  # with the time
     event = sum(np.dtype(variable.dtype).itemsize for variable in EVENTS.values())
-    sizes = 8e-6 * numbers * run.sample_count, 1e-6 * event * expected.events
-    yield "samples", f"{run.sample_count}", f"{sizes[0]:.3g} MB, and some {sizes[1]:.1g} MB of events"
+    sizes = 8e-6 * numbers * count, 1e-6 * event * expected.events
+    yield "samples", f"{count}", f"{sizes[0]:.3g} MB, and some {sizes[1]:.1g} MB of events"
+    if needed is not None:
+        words = 'to show how the contacts ring: run.samples = "ringing"'
+        yield "samples needed", f"{needed}", words if count < needed else "to show how the contacts ring"
     yield "relative tolerance", f"{run.rtol:g}", ""
     yield (
         "expected wall time",

@@ -109,7 +109,8 @@ def power_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     harmonics = scene_of(ds).get("drive", {}).get("harmonic", [])
     drive = [float(harmonic["frequency"]) for harmonic in harmonics if "frequency" in harmonic]
     mesh = max(_mesh_frequency(ds, _settled(run, _SETTLED)) for run in shown)
-    rings = [] if drive else sorted({ring for run in shown for ring in _rings(run)})
+    found = [] if drive else [impacts for run in shown if (impacts := _impacts(run)) is not None]
+    rings = sorted({float(ring) for impacts in found for ring in impacts["frequency"].values if ring > 0.0})
     lines = [line for line in (mesh, *drive) if line > 0.0]
     wide = bool(rings and lines) and rings[-1] > _MULTIPLES * max(lines)
     # one segment: the lines stand still, and the resolution separates them; zeros draw their shape instead of a zigzag
@@ -132,6 +133,8 @@ def power_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     _fit_heights(ax, wide)
     _mark_all(ax, drive, mesh, rings if wide and len(shown) == 1 else [])
     _name_estimate(ax, resolution, wide)
+    for impacts in found:
+        _note_aliases(ax, impacts)
     ax.xaxis.set_major_formatter(EngFormatter("Hz"))
     ax.set_xlabel("frequency")
     ax.set_ylabel("power spectral density\n((rad/s)²/Hz)")
@@ -162,9 +165,9 @@ def spectrogram(ds: xr.Dataset, ax: Axes | None = None, *, highest: float | None
         If the dataset is a sweep or has no samples of the gear's speed.
     """
     run = _single(ds)
-    density = analysis.spectrogram(run)
+    density, found = analysis.spectrogram(run), analysis.impact_frequencies(run)
     if highest is None:
-        rings = analysis.impact_frequencies(run)["frequency"].values
+        rings = found["frequency"].values
         ringing = rings[np.isfinite(rings)]
         highest = 4.0 * float(ringing.max()) if ringing.size else math.inf
     density = density.sel(frequency=slice(0.0, highest))
@@ -181,6 +184,7 @@ def spectrogram(ds: xr.Dataset, ax: Axes | None = None, *, highest: float | None
     )
     bar = ax.figure.colorbar(mesh, ax=ax, pad=0.02)
     bar.set_label("dB re 1 (rad/s)²/Hz")
+    _note_aliases(ax, found)
     ax.yaxis.set_major_formatter(EngFormatter("Hz"))
     ax.set_xlabel(f"time ({scale.unit})")
     ax.set_ylabel("frequency")
@@ -210,9 +214,12 @@ def impact_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     shown = runs_of(ds, "gear_speed")
     ax = new_axes(ax)
     drawn, highest, nyquist = [], 0.0, math.inf
+    notes: list[str] = []
     for run in shown:
         record = _between(run.data, 0, _MOST_SAMPLES)
-        rings = analysis.impact_frequencies(record)["frequency"]
+        found = analysis.impact_frequencies(record)
+        notes.append(f"({found.attrs['note']})" if "note" in found.attrs else "")
+        rings = found["frequency"]
         ringing = np.flatnonzero(np.isfinite(rings.values))
         if not ringing.size:
             continue
@@ -230,7 +237,9 @@ def impact_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
             label=drawn[-1].label,
         )
     if not highest:
-        raise SceneError("plot", "impact_spectrum", "no impact rings in the dataset")
+        raise SceneError(
+            "plot", "impact_spectrum", " ".join(filter(None, ("no impact rings in the dataset", *notes)))
+        )
     ax.set_xlim(0.0, min(nyquist, 2.0 * highest))
     ax.set_ylim(0.0, 1.25)
     ax.xaxis.set_major_formatter(EngFormatter("Hz"))
@@ -242,6 +251,13 @@ def impact_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
         ax.annotate(drawn[0].label, (highest, 1.0), **place, fontsize="small", color=drawn[0].colour)
     legend(ax, drawn)
     return ax
+
+
+def _note_aliases(ax: Axes, found: xr.Dataset) -> None:
+    """Say above a picture that its highest lines may be aliases."""
+    if "note" in found.attrs:
+        first, _, rest = str(found.attrs["note"]).partition("; ")
+        ax.set_title(f"{first};\n{rest}", fontsize="x-small", loc="left")
 
 
 def _single(ds: xr.Dataset) -> xr.Dataset:
@@ -278,14 +294,13 @@ def _between(run: xr.Dataset, first: int, end: int) -> xr.Dataset:
     return part.isel(event=np.concatenate([*events, np.empty(0, dtype=np.int64)])).load()
 
 
-def _rings(run: Run) -> list[float]:
-    """Frequencies of the impact responses of a run [Hz], those that stand out."""
+def _impacts(run: Run) -> xr.Dataset | None:
+    """Frequencies of the impact responses of a run, where it has any."""
     record = _between(run.data, 0, _MOST_SAMPLES)
     try:
-        rings = analysis.impact_frequencies(record)["frequency"].values
+        return analysis.impact_frequencies(record)
     except SceneError:  # too short a record, or one without events
-        return []
-    return [float(ring) for ring in rings[np.isfinite(rings)]]
+        return None
 
 
 def _fit_heights(ax: Axes, wide: bool) -> None:

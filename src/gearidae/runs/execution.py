@@ -20,7 +20,7 @@ from gearidae.errors import Interrupted, SceneError
 from gearidae.progress import sweep_progress
 from gearidae.runs.executors import check_executor, check_jobs, own_executor, side_by_side
 from gearidae.runs.run_cache import RunCache
-from gearidae.runs.running import SomeScene, prepare
+from gearidae.runs.running import SomeScene, prepare, with_samples
 
 if TYPE_CHECKING:
     from gearidae.progress import SweepProgress
@@ -133,7 +133,7 @@ def prepared(
     scene: SomeScene, options: RunOptions, *, samples: int | str | None = None
 ) -> tuple[SomeScene, Execution]:
     """Check the scene and the options of a study, before anything is run; `samples` are in place of the scene's."""
-    base = prepare(scene, rtol=None, samples=samples, backend=options.get("backend", "auto"))
+    base = with_samples(prepare(scene, rtol=None, samples=samples, backend=options.get("backend", "auto")))
     return base, Execution(**options, method=base.run.method)
 
 

@@ -81,6 +81,15 @@ def prepare(
     return scene.replace(changes) if changes else scene
 
 
+def with_samples(scene: SomeScene) -> SomeScene:
+    """Put the number of samples into a scene that asks for those of the ringing."""
+    if scene.run.samples != "ringing":
+        return scene
+    from gearidae.runs.ringing_samples import counted  # which few runs need
+
+    return scene.replace({"run.samples": counted([scene])})
+
+
 def _require_memory() -> None:
     """Refuse a process that may use too little memory: compiled libraries end it where they get none."""
     if sys.platform == "win32":

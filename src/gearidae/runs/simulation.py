@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from gearidae.errors import Interrupted, SceneError
 from gearidae.progress import RunProgress, run_progress
 from gearidae.runs.plausibility import log_doubts
-from gearidae.runs.running import early_end, prepare, solve, watched
+from gearidae.runs.running import early_end, prepare, solve, watched, with_samples
 from gearidae.runs.starting import started_attributes, started_from
 
 if TYPE_CHECKING:
@@ -103,6 +103,7 @@ def simulate(
         scene = scene.replace({"initial.mesh_phase": begin.scene.initial.mesh_phase})
     if t_end is not None:
         scene = _ending(scene, t_end, begin.time)
+    scene = with_samples(scene)
     log_doubts(scene)
     # xarray takes a third of a second to import, longer than most runs take: it is not waited for before one
     if archive is not None:

@@ -82,6 +82,11 @@ def plan_sweep(
         base.replace(dict(zip(listed, itertools.chain(*values), strict=True)))
         for values in itertools.product(*steps)
     ]
+    if base.run.samples == "ringing":
+        from gearidae.runs.ringing_samples import counted
+
+        samples = {"run.samples": counted(scenes)}  # of the run that rings fastest: all share one time axis
+        base, scenes = base.replace(samples), [scene.replace(samples) for scene in scenes]
     axes: list[Axis] = []
     stride = len(scenes)
     for group, length in zip(groups, map(len, steps), strict=True):

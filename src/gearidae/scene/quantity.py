@@ -194,7 +194,7 @@ class Count(_Bounded):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sampling(Count):
-    """How often to sample: a whole number of samples, a rate, or ``"off"``."""
+    """How often to sample: a whole number of samples, a rate, ``"off"`` or ``"ringing"``."""
 
     def __get_pydantic_json_schema__(
         self, core: CoreSchema, handler: GetJsonSchemaHandler
@@ -202,10 +202,10 @@ class Sampling(Count):
         """Describe what may stand here."""
         number = {"type": "integer", **self.limits()}
         rate = {"type": "string", "description": "a rate with its unit"}
-        return {"anyOf": [number, {"const": "off"}, rate]}
+        return {"anyOf": [number, {"enum": ["off", "ringing"]}, rate]}
 
     def read(self, value: object) -> int | str:  # type: ignore[override]
-        """Read a number of samples, or a text that is a rate or ``"off"``.
+        """Read a number of samples, or a text that is a rate, ``"off"`` or ``"ringing"``.
 
         Parameters
         ----------
@@ -225,8 +225,8 @@ class Sampling(Count):
         if not isinstance(value, str):
             # Count's own method by name: slots make a class anew, and super() would look for the old one
             return Count.read(self, value)
-        if value.strip().lower() == "off":
-            return "off"
+        if (word := value.strip().lower()) in ("off", "ringing"):
+            return word
         rate = from_text(value, "Hz")
         if not (math.isfinite(rate) and rate > 0.0):
             raise ValueError("must be a rate above 0 Hz")
@@ -234,7 +234,7 @@ class Sampling(Count):
 
     def allowed(self) -> str:
         """Return what may stand here, in words."""
-        return f'must be a whole number {self.range()}, a rate ("20 kHz"), or "off"'
+        return f'must be a whole number {self.range()}, a rate ("20 kHz"), "ringing", or "off"'
 
     @staticmethod
     def rate(text: str) -> float:

@@ -64,7 +64,9 @@ class Run(Group):
         description="simulated time"
     )
     samples: Annotated[int | str, Sampling(at_least=2, at_most=MOST_SAMPLES)] = Field(
-        default=10_001, description="uniform samples, both ends included: a number, a rate, or off"
+        default=10_001,
+        description="uniform samples, both ends included: a number, a rate, ringing (as many as show how the contacts "
+        "ring), or off",
     )
     rtol: Annotated[float, Quantity(unit="1", at_least=1e-12, at_most=0.1)] = Field(
         default=1e-6,
@@ -100,7 +102,7 @@ class Run(Group):
     @model_validator(mode="after")
     def _countable(self) -> Self:
         """Refuse a rate that gives too few samples in this duration, or too many."""
-        if isinstance(self.samples, str) and self.samples != "off":
+        if isinstance(self.samples, str) and self.samples not in ("off", "ringing"):
             wanted = self.duration * Sampling.rate(self.samples) + 1.0
             if not 1.5 <= wanted < MOST_SAMPLES + 0.5:
                 raise SceneError(
@@ -119,10 +121,14 @@ class Run(Group):
 
     @property
     def sample_count(self) -> int:
-        """Number of samples; 0 if they are off."""
+        """Number of samples; 0 if they are off, or until those of the ringing are known, when a run is prepared."""
         if isinstance(self.samples, int):
             return self.samples
-        return 0 if self.samples == "off" else round(self.duration * Sampling.rate(self.samples)) + 1
+        return (
+            0
+            if self.samples in ("off", "ringing")
+            else round(self.duration * Sampling.rate(self.samples)) + 1
+        )
 
 
 class Roller(Group):

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 from gearidae.lazy import lazy_names
 
 if TYPE_CHECKING:
+    from gearidae.runs.equilibrium import contact_resonance as contact_resonance
+    from gearidae.runs.equilibrium import natural_frequency as natural_frequency
     from gearidae.runs.estimates import effective_mass as effective_mass
     from gearidae.runs.estimates import resting_gap as resting_gap
     from gearidae.runs.estimates import steady_speed as steady_speed
@@ -34,8 +36,6 @@ if TYPE_CHECKING:
     from gearidae.studies.declared.predict import predict as predict
     from gearidae.studies.declared.pull_off import pull_off as pull_off
     from gearidae.studies.declared.threshold import sticking_threshold as sticking_threshold
-    from gearidae.studies.equilibrium import contact_resonance as contact_resonance
-    from gearidae.studies.equilibrium import natural_frequency as natural_frequency
     from gearidae.studies.life_dataset import assess_life as assess_life
     from gearidae.studies.observation_files import read_observations as read_observations
     from gearidae.studies.observations import Observation as Observation

@@ -17,6 +17,7 @@ from gearidae.archive.provenance import provenance
 from gearidae.archive.variables import SAM_FRACTION
 from gearidae.errors import SceneError
 from gearidae.runs.execution import Execution, RunOptions, prepared
+from gearidae.runs.release import holding_forces
 from gearidae.runs.run_cache import RunCache
 from gearidae.runs.running import FAILS, failure_of, solve_to_end, unfinished, unsolved
 from gearidae.scene import require_gears
@@ -25,7 +26,6 @@ from gearidae.scene.quantity import whole
 from gearidae.studies._starting_seeds import starting_torques
 from gearidae.studies.bracket import STRIDE, bracket, next_value
 from gearidae.studies.declared.starting_torque import STUDY
-from gearidae.studies.release import holding_forces
 from gearidae.studies.requirements import require_constant
 from gearidae.studies.starting_parts import PARTS, Starting, parts_of
 from gearidae.studies.starting_ramp import nothing_followed, pitch_of
@@ -61,7 +61,7 @@ def static_starting_torque(scene: Scene, *, impacts: int = 3, lowest: float | No
     -------
     float
         Torque on the pinion [N m]: the M10 at which ``M10/R1 = max(-s' W_l) + M20/R2`` holds at the worst exit, see
-        `gearidae.studies.release`; with friction, ``M10 = i (R2 max(-s' W_l) + M20 + m2) + m1`` of
+        `gearidae.runs.release`; with friction, ``M10 = i (R2 max(-s' W_l) + M20 + m2) + m1`` of
         `gearidae.studies.starting_parts`, friction of the flanks being that under the scene's own torque. What
         the dry resistance and the joints take (0 without any) if adhesion does not hold the gear even at the lowest
         torque; infinite if it does at any.

@@ -89,7 +89,8 @@ def coating_map(
     Dataset, dims (..., sam_fraction, impact)
         ``characteristic_frequency`` and its standard ``uncertainty`` [Hz], of the first impact; ``impact_frequency``
         and ``impact_uncertainty`` [Hz] of each, at ``impact_time`` [s]; ``median_gear_speed`` and
-        ``min_gear_speed`` [rad/s]. NaN where nothing rings, and of a run that could not be finished, which says so in
+        ``min_gear_speed`` [rad/s]. NaN where nothing rings, where the contact rings faster than the samples show
+        (the attribute ``note`` says so), and of a run that could not be finished, which says so in
         its ``status`` and ``message``. The scene and how it was made are attributes.
 
     Raises
@@ -117,7 +118,10 @@ def coating_map(
     def work(kept: RunCache | None) -> xr.Dataset:
         # one line at a time: what is kept of a run is a few numbers of some megabytes
         lines = [_line(run_plan(plan, execution, kept), width) for plan in plans]
-        return _assembled(lines, numbers).assign_attrs(_attributes(scene, (_FRACTION, *keys), lines[0].attrs))
+        notes = [line.attrs for line in lines if "note" in line.attrs]
+        return _assembled(lines, numbers).assign_attrs(
+            _attributes(scene, (_FRACTION, *keys), {**lines[0].attrs, **(notes[0] if notes else {})})
+        )
 
     scenes = [run for plan in plans for run in plan.scenes]
     settings = {_FRACTION: fractions, **numbers, "width": width}
@@ -259,11 +263,12 @@ def _call(
 
 def _sentence(ds: xr.Dataset) -> str:
     frequency = ds["characteristic_frequency"].values
+    note = f" {str(ds.attrs['note'])[:1].upper()}{str(ds.attrs['note'])[1:]}." if "note" in ds.attrs else ""
     if not np.isfinite(frequency).any():
-        return "Nothing rings at any coverage."
+        return note.strip() or "Nothing rings at any coverage."
     low, high = (with_prefix(float(f(frequency)), "Hz", 4) for f in (np.nanmin, np.nanmax))
     ends = [f"{100.0 * float(f(ds['sam_fraction'])):.4g} %" for f in (np.max, np.min)]
-    return f"From SAM {ends[0]} to {ends[1]} the teeth ring at {low} to {high}."
+    return f"From SAM {ends[0]} to {ends[1]} the teeth ring at {low} to {high}.{note}"
 
 
 def _rows(ds: xr.Dataset) -> Rows:

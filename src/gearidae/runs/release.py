@@ -1,0 +1,152 @@
+r"""How hard a leaving pair of teeth holds the gear back: the static side of sticking.
+
+While a pair leaves the mesh, d beyond the end of its path of contact, its rounded tip has opened its gap by
+:math:`s = d^2/2\rho`. Asperities joined before stretch, the pair pulls, and its pull acts on the gear through
+:math:`s' = d/\rho`. The pairs that stay carry the drive and the pull,
+
+.. math::
+
+    \sum_j W_j(g, \zeta) + W_l(g + s, \zeta) = M_{10}/R_1,
+
+which gives the gap g at every d; the gear turns on if
+
+.. math::
+
+    M_{10}/R_1 + s' W_l \ge M_{20}/R_2 .
+
+The pull presses the staying pairs together, so that the next one to leave has been pressed deeper than this one: the
+resistance grows from one mesh exit to the next. Teodorescu et al. 2009 (doi:10.1016/j.triboint.2008.05.019), Eqs. 1-15.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from gearidae.arrays import Floats
+from gearidae.asperities import law_of_tip
+from gearidae.asperities.tip import asperity_of
+from gearidae.runs.equilibrium import leaving_radii, nearest_gap, pair_law, settled_gap
+
+if TYPE_CHECKING:
+    from gearidae.scene import GearScene
+
+_STEPS = 60
+"""Places along the tip between which the largest pull is looked for."""
+_PLACE_ERROR = 1e-5
+"""Of the place of the largest pull, in distances of these: beside its cusp the pull falls by half over some."""
+_REACH = 4.0
+"""The tip is followed until it has opened the gap by this many roughnesses more than asperities stretch."""
+
+
+class Exit(NamedTuple):
+    """One mesh exit in slow motion.
+
+    Attributes
+    ----------
+    resistance : float
+        Largest ``max(-s' W_l)`` [N], acting at the gear's base radius against its turning; 0 if nothing pulls.
+    joined : float
+        Smallest gap to which the staying pairs have been pressed so far [m].
+    """
+
+    resistance: float
+    joined: float
+
+
+def holding_forces(scene: GearScene, force: float, impacts: int) -> list[float]:
+    """Largest resistance of the leaving pair at successive mesh exits [N], see `exits`."""
+    return [leaving.resistance for leaving in exits(scene, force, impacts)]
+
+
+def exits(scene: GearScene, force: float, impacts: int) -> list[Exit]:
+    """Follow successive mesh exits in slow motion.
+
+    Parameters
+    ----------
+    scene : Scene
+        With gears.
+    force : float
+        Drive torque over the pinion's base radius [N], positive.
+    impacts : int
+        Mesh exits to follow, from a contact that has been pressed by `force` alone.
+
+    Returns
+    -------
+    list of Exit
+    """
+    law, rho = pair_law(scene), scene.mesh.tip_relief_radius
+    leaving, staying = leaving_radii(scene)
+    law_of_one = law_of_tip(scene.contact.asperity, asperity_of(scene.surface), 1.0)  # in metres
+    reach = _REACH * scene.surface.roughness + law_of_one.detach
+    ends = np.linspace(0.0, math.sqrt(2.0 * rho * reach), _STEPS + 1)
+
+    def loading(gap: float) -> float:
+        return sum(law(gap, gap, radius) for radius in (leaving, *staying)) - force
+
+    def balanced(beyond: float, near: float, joined: float) -> tuple[float, float]:
+        """Depth of the gap at a place of the tip, next to a gap where the forces nearly balance, and the resistance."""
+        opened = beyond**2 / (2.0 * rho)
+
+        def balance(gap: float) -> float:
+            stays = sum(law(gap, joined, radius) for radius in staying)
+            return stays + law(gap + opened, joined, leaving) - force
+
+        gap = nearest_gap(scene, balance, near)
+        return -gap, -law(gap + opened, joined, leaving) * beyond / rho
+
+    joined = gap = settled_gap(scene, loading)
+    followed_exits = []
+    for _ in range(impacts):
+        followed = [(-gap, 0.0)]
+        for beyond in ends[1:]:
+            followed.append(balanced(float(beyond), -followed[-1][0], joined))
+        deepest, most = (
+            _largest(partial(balanced, joined=joined), ends, followed, which) for which in (0, 1)
+        )
+        joined, gap = min(joined, -deepest), -followed[-1][0]
+        followed_exits.append(Exit(most, joined))
+    return followed_exits
+
+
+def _largest(
+    at: Callable[[float, float], tuple[float, float]],
+    places: Floats,
+    known: Sequence[tuple[float, float]],
+    which: int,
+) -> float:
+    """Largest depth or resistance along the tip, by golden section between the neighbours of the largest known one.
+
+    It has a cusp where the asperities that were pressed deepest let go, so that no parabola through it helps.
+
+    Parameters
+    ----------
+    at : callable
+        Depth and resistance of a place and a gap near that of the balance.
+    places, known
+        Places from the end of the path on, and what `at` gives there.
+    which : int
+        0 for the depth, 1 for the resistance.
+    """
+    k = max(range(len(known)), key=lambda n: known[n][which])
+    before = max(k - 1, 0)
+    low, high = float(places[before]), float(places[min(k + 1, len(places) - 1)])
+    near, part, error = -known[before][0], 0.5 * (math.sqrt(5.0) - 1.0), _PLACE_ERROR * (high - low)
+    inner, outer = high - part * (high - low), low + part * (high - low)
+    at_inner, at_outer = at(inner, near)[which], at(outer, near)[which]
+    most = max(known[k][which], at_inner, at_outer)
+    while high - low > error:
+        if at_inner > at_outer:
+            high, outer, at_outer = outer, inner, at_inner
+            inner = high - part * (high - low)
+            at_inner = at(inner, near)[which]
+        else:
+            low, inner, at_inner = inner, outer, at_outer
+            outer = low + part * (high - low)
+            at_outer = at(outer, near)[which]
+        most = max(most, at_inner, at_outer)
+    return most
