@@ -64,9 +64,16 @@ def test_a_map_says_where_it_has_aliases():
     assert "may be aliases" in str(chart.gearidae)
 
 
+@pytest.mark.filterwarnings("ignore:sampling at:UserWarning")
 @pytest.mark.parametrize("picture", [gd.plot.spectrogram, gd.plot.power_spectrum])
 def test_pictures_say_so(picture, slow):
     assert "may be aliases" in picture(slow).get_title(loc="left")
+
+
+def test_spectra_warn_with_both_numbers():
+    """At 100 kHz the fifth response of 54 kHz is seen at 46 kHz; the estimate at rest is 3.7 kHz."""
+    with pytest.warns(UserWarning, match="sampling at 1e\\+05 Hz is below twice .* 5.19e\\+04 Hz"):
+        gd.analysis.power_spectrum(gd.simulate(WORN, samples=30_001))
 
 
 # -- records that ring where the map does not -------------------------------------------------------------------------

@@ -114,7 +114,7 @@ def characteristic_frequency(
     """
     frequencies = impact_frequencies(data, width=width, gear_teeth=gear_teeth)
     ringing = np.isfinite(frequencies["frequency"].values)
-    known = ringing | _hidden(frequencies)
+    known = ringing | hidden(frequencies)
     first = known.argmax(axis=-1) if known.shape[-1] else np.zeros(ringing.shape[:-1], dtype=np.int64)
     picked = {}
     for name in ("frequency", "uncertainty"):
@@ -204,19 +204,19 @@ def impact_frequencies(
             "sampling_rate": batch.signals[0].rate,
         },
     )
-    hidden = _hidden(ds)
-    if hidden.any():
+    aliased = hidden(ds)
+    if aliased.any():
         rate, fastest = batch.signals[0].rate, float(np.nanmax(ds["contact_frequency"].values))
         ds.attrs["note"] = (
             f"contacts ring at up to {with_prefix(fastest, 'Hz', 3)}: sampled at {with_prefix(rate, 'Hz', 3)}, "
-            f"{hidden.sum()} of {hidden.size} responses may be aliases; they need "
+            f"{aliased.sum()} of {aliased.size} responses may be aliases; they need "
             f'{with_prefix(fastest / HIGHEST, "Hz", 3)} (run.samples = "ringing")'
         )
     return ds
 
 
-def _hidden(frequencies: xr.Dataset) -> NDArray[np.bool_]:
-    """Where the contact itself rings faster than the sampling shows."""
+def hidden(frequencies: xr.Dataset) -> NDArray[np.bool_]:
+    """Where the contact itself rings faster than the sampling shows; see `impact_frequencies`."""
     return np.asarray(frequencies["contact_frequency"].values > HIGHEST * frequencies.attrs["sampling_rate"])
 
 
@@ -295,7 +295,7 @@ def rings_of(signal: Signal, width: float) -> list[Ring]:
     """
     teeth = signal.gear_teeth or 0
     rings = [
-        replace(_ring(signal, row, teeth), own=_own_frequency(signal, row))
+        replace(_ring(signal, row, teeth), own=own_frequency(signal, row))
         for row in windows_of(signal, width)
     ]
     highest = HIGHEST * signal.rate
@@ -315,7 +315,7 @@ def rings_of(signal: Signal, width: float) -> list[Ring]:
     return rings
 
 
-def _own_frequency(signal: Signal, window: Floats) -> float:
+def own_frequency(signal: Signal, window: Floats) -> float:
     """Frequency at which the gap of a pair oscillates in a window [Hz]: half its turning points over their time.
 
     Of several pairs in mesh that counts which turns round most often. NaN where events are not known, or too few.

@@ -19,6 +19,8 @@ import numpy as np
 import scipy
 import xarray as xr
 
+from gearidae.analysis.impacts import WIDTH, windows_of
+from gearidae.analysis.ringing import own_frequency
 from gearidae.analysis.signal import FEWEST_SAMPLES, Batch, signals, stack
 from gearidae.archive.select import is_roller, run_scene, runs
 from gearidae.arrays import Floats
@@ -79,7 +81,7 @@ def power_spectrum(
     padding = whole("padding", padding, 1, _MOST_PADDING)
     batch = signals(data, variable)
     size, rate = _segment(batch, segment, 0.5), batch.signals[0].rate
-    warn_of_aliasing(data, rate)
+    warn_of_aliasing(data, batch)
     taper = _taper(window, size)
     long = padding * size
     rows = [
@@ -140,7 +142,7 @@ def spectrogram(
     batch = signals(data, variable)
     first = batch.signals[0]
     size = _segment(batch, segment, 1.0 / _PIECES)
-    warn_of_aliasing(data, first.rate)
+    warn_of_aliasing(data, batch)
     shared = min(size - 1, round(overlap * size))
     taper = _taper(window, size)
     longest = max(len(signal.values) for signal in batch.signals)
@@ -206,21 +208,28 @@ def _attributes(batch: Batch, window: str | tuple[str, float], size: int, overla
     }
 
 
-def warn_of_aliasing(data: xr.Dataset | xr.DataArray, rate: float) -> None:
+def warn_of_aliasing(data: xr.Dataset | xr.DataArray, batch: Batch) -> None:
     """Warn of a record whose sampling rate is below twice the frequency of the contact.
+
+    That is the largest after a mesh exit by the turning points of the events, and else estimated from the drive torque.
 
     Parameters
     ----------
     data : Dataset or DataArray
         Runs of gears with their drive torque; nothing is known of others.
-    rate : float
-        Sampling rate [Hz].
+    batch : Batch
+        Their signals.
     """
     if not isinstance(data, xr.Dataset) or "scene" not in data.attrs or "drive_torque" not in data:
         return
     if is_roller(data):
         return
+    rate = batch.signals[0].rate
     frequency = max(_contact_frequency(run_scene(run), run) for _, run in runs(data))
+    if batch.name == "gear_speed":  # what impacts are found in
+        known = [signal for signal in batch.signals if signal.turnings is not None and signal.gear_teeth]
+        seen = (own_frequency(signal, window) for signal in known for window in windows_of(signal, WIDTH))
+        frequency = max(frequency, *(value for value in seen if value > 0.0), 0.0)
     if rate < 2.0 * frequency:
         warnings.warn(
             f"sampling at {rate:.4g} Hz is below twice the frequency of the loaded contact, {frequency:.4g} Hz: the "

@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import EngFormatter
 
 from gearidae import analysis
+from gearidae.analysis.ringing import hidden
 from gearidae.analysis.spectra import banded, crowded_from
 from gearidae.analysis.verdict import START_UP
 from gearidae.archive.pieces import pieces, reached
@@ -221,8 +222,8 @@ def impact_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
         notes.append(f"({found.attrs['note']})" if "note" in found.attrs else "")
         rings = found["frequency"]
         ringing = np.flatnonzero(np.isfinite(rings.values))
-        if not ringing.size:
-            continue
+        if not ringing.size or hidden(found)[: ringing[0]].any():
+            continue  # also where only later responses are slow enough to show
         density = analysis.impact_spectrum(record).isel(impact=int(ringing[0]))
         ring = float(rings[ringing[0]])
         highest, nyquist = max(highest, ring), float(density["frequency"][-1])
