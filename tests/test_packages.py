@@ -1,12 +1,40 @@
 """Dependencies of the packages: who imports whom, read from the sources and never run."""
 
 import ast
+import subprocess
+import sys
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
 
 SOURCE = Path(__file__).parents[1] / "src" / "gearidae"
+USES = (
+    "surfaces",
+    "plot",
+    "report",
+    "testing",
+    "studies._",
+    "studies.declared.",
+    "studies.life",
+    "studies.observation",
+    "studies.posterior",
+    "analysis.a",
+    "analysis.map_model",
+    "analysis.measured",
+    "analysis.record",
+    "analysis.ringing",
+    "analysis.spectra",
+)
+"""What nobody needs to run gears: pictures, studies, coating maps and assessments, lives, calibrations, height maps."""
+RUN = """
+import sys
+
+from gearidae.cli import main
+
+code = main(["run", "teodorescu2009_low_speed", "--set", "run.duration=1e-3", "-o", sys.argv[1]])
+print(code, *sorted(name for name in sys.modules if name.startswith("gearidae.")))
+"""
 
 
 def imported(path, package):
@@ -77,3 +105,14 @@ def test_a_circle_would_be_found(tmp_path):
     assert arrows(tmp_path, "p") == {"a": {"b"}, "b": {"c"}, "c": {"a"}}
     with pytest.raises(CycleError):
         TopologicalSorter(arrows(tmp_path, "p")).prepare()
+
+
+def test_a_run_loads_none_of_what_others_use(tmp_path):
+    """In a process of its own, as the command line runs it; what it does need shows that the look sees modules."""
+    command = [sys.executable, "-c", RUN, str(tmp_path / "run.nc")]
+    code, *loaded = (
+        subprocess.run(command, capture_output=True, text=True, check=True).stdout.split("\n")[-2].split()
+    )
+    assert code == "0"
+    assert {"gearidae.scene", "gearidae.engine.backend", "gearidae.runs.simulation"} <= set(loaded)
+    assert [name for name in loaded if name.removeprefix("gearidae.").startswith(USES)] == []
