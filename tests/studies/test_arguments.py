@@ -28,6 +28,20 @@ def drawn():
         ("progress", lambda: gd.sweep(LOW, {"coating.sam_fraction": [1.0]}, progress="1 kg")),
         ("joined", lambda: contact_resonance(LOW, math.nan)),
         ("load", lambda: gd.studies.pull_off(LOW, seeds=1, load=3.5)),
+        ("accuracy", lambda: gd.studies.sensitivity(LOW, "drive.torque", of="mesh_exits", accuracy="abc")),
+        ("accuracy", lambda: gd.studies.sensitivity(LOW, "drive.torque", of="mesh_exits", accuracy=math.nan)),
+        ("scale", lambda: gd.studies.sensitivity(LOW, "load.torque", of="mesh_exits", scale="abc")),
+        ("tolerance", lambda: gd.studies.starting_torque(LOW, tolerance="abc")),
+        ("simulated", lambda: gd.studies.starting_torque(LOW, simulated="abc")),
+        ("lowest", lambda: gd.studies.static_starting_torque(LOW, lowest="abc")),
+        (
+            "width",
+            lambda: gd.studies.sticking_threshold(
+                LOW, over="coating.sam_fraction", between=(0.4, 0.6), width="abc"
+            ),
+        ),
+        ("width", lambda: gd.analysis.coating_map(LOW, [0.5], width="abc")),
+        ("gear_teeth", lambda: gd.analysis.impact_windows(gd.simulate(LOW, samples=201), gear_teeth=0)),
     ],
 )
 def test_what_cannot_be_meant_is_refused(key, call):

@@ -18,6 +18,7 @@ import xarray as xr
 from gearidae.analysis.signal import FEWEST_SAMPLES, Signal, signals, stack
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
+from gearidae.scene.quantity import number
 
 LEAD = 0.02
 """A window begins this much before its impact, in pitches."""
@@ -149,7 +150,7 @@ def lowest_frequency(speed: Floats, gear_teeth: int) -> float:
 
 def check_width(width: float) -> float:
     """Refuse a window that holds nothing, or more than one impact."""
-    if not LEAD <= width <= 1.0:
+    if not LEAD <= (width := number("width", width)) <= 1.0:
         raise SceneError("width", width, f"must lie in {LEAD:g}..1 pitches")
     return width
 

@@ -16,6 +16,7 @@ from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.records import EventKind, Flank
 from gearidae.scene.carried import numbers_of
+from gearidae.scene.quantity import whole
 from gearidae.scene.units import cf_unit
 
 FEWEST_SAMPLES = 16
@@ -152,7 +153,7 @@ def signals(
     late = int(np.isfinite(samples).reshape(-1, samples.shape[-1]).any(axis=0).argmax())
     start, samples = start + late * interval, samples[..., late:]
     dims = tuple(str(dim) for dim in array.dims[:-1])
-    teeth = gear_teeth if gear_teeth is not None else _gear_teeth(data.attrs)
+    teeth = whole("gear_teeth", gear_teeth, 1) if gear_teeth is not None else _gear_teeth(data.attrs)
     nothing = Signal(start, interval, np.empty(0), gear_teeth=teeth)
     events = _events_of(data, array, dims, nothing)
     return Batch(

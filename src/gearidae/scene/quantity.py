@@ -260,6 +260,11 @@ def _read_switch(value: object) -> bool:
     return value
 
 
+def number(name: str, value: object, unit: str = "1") -> float:
+    """Read a setting that is a finite number, or a text with a unit; a `SceneError` says what is wrong with it."""
+    return Quantity(unit=unit).take(name, value)
+
+
 def switch(name: str, value: object) -> bool:
     """Read a setting that is true or false; a `SceneError` says what is wrong with it."""
     try:

@@ -35,6 +35,7 @@ from gearidae.runs.execution import interruptible
 from gearidae.runs.executors import check_executor, side_by_side
 from gearidae.runs.simulation import simulate
 from gearidae.scene.keys import scene_value
+from gearidae.scene.quantity import number
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -143,7 +144,9 @@ def sensitivity(
     """
     check_executor(executor)
     middle = _number(scene, key)
-    size = abs(middle) if scale is None else float(scale)
+    size = abs(middle) if scale is None else number("scale", scale)
+    if not (accuracy := number("accuracy", accuracy)) > 0.0:
+        raise SceneError("accuracy", accuracy, "must be above 0")
     if not (size > 0.0 and math.isfinite(size)):
         raise SceneError(key, middle, "is zero: say what size steps are measured by (scale=)")
     figure = _figure(of)

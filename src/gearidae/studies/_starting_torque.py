@@ -22,7 +22,7 @@ from gearidae.runs.run_cache import RunCache
 from gearidae.runs.running import FAILS, failure_of, solve_to_end, unfinished, unsolved
 from gearidae.scene import require_gears
 from gearidae.scene.carried import numbers_of
-from gearidae.scene.quantity import whole
+from gearidae.scene.quantity import number, switch, whole
 from gearidae.studies._starting_seeds import starting_torques
 from gearidae.studies.bracket import STRIDE, bracket, next_value
 from gearidae.studies.declared.starting_torque import STUDY
@@ -161,6 +161,7 @@ def starting_torque(
     pressed by the first touch harder than by the torque, which makes the next ones harder.
     """
     scene = _require(scene, impacts)
+    tolerance, simulated = number("tolerance", tolerance), switch("simulated", simulated)
     if not 0.001 <= tolerance <= 1.0:
         raise SceneError("tolerance", tolerance, "must lie in 0.001..1")
     base, execution = prepared(scene, options)
@@ -335,7 +336,7 @@ def _dry(scene: GearScene) -> float:
 
 
 def _lowest(scene: GearScene, asked: float | None) -> float:
-    lowest = _LOWEST * abs(scene.drive.torque) if asked is None else asked
+    lowest = _LOWEST * abs(scene.drive.torque) if asked is None else number("lowest", asked, "N m")
     if not 0.0 < lowest < math.inf:
         allowed = (
             "must be a positive torque; give the lowest to be tried (lowest=, --lowest) where the scene has no "

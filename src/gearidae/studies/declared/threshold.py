@@ -23,7 +23,7 @@ from gearidae.runs.sweep_plan import values_of
 from gearidae.scene import require_gears
 from gearidae.scene.keys import find_key
 from gearidae.scene.pairs import sweep_values
-from gearidae.scene.quantity import whole
+from gearidae.scene.quantity import number, whole
 from gearidae.studies.bracket import bracket
 from gearidae.studies.study import Call, Column, Option, Picture, Rows, Study
 from gearidae.studies.threshold_run import ThresholdRun, run_until, value_of
@@ -107,7 +107,7 @@ def sticking_threshold(
     scene = require_gears(scene)
     ends = _ends(scene, over, between)
     base, execution = prepared(scene, options, samples="off")
-    width = abs(ends[1] - ends[0]) * _WIDTH if width is None else width
+    width = abs(ends[1] - ends[0]) * _WIDTH if width is None else number("width", width)
     _check(exits, width)
     if not is_scheduled(base.to_dict()):  # a schedule has a time of its own
         base = base.replace({"run.duration": _window(base, exits)})
