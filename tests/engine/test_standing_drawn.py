@@ -174,3 +174,24 @@ def test_drawn_runs_are_judged_as_from_samples_alone(seed):
 def test_every_kind_of_run_with_every_friction(seed):
     assert_judged_alike(drawn(seed))
     assert_judged_alike(cut_short(seed))
+
+
+PARTS = (
+    *("settled_gear_speed", "settled_spread", "speed_fall", "speed_rise", "late_gear_speed", "late_spread"),
+    *("last_min_gear_speed", "standing_time", "start_time"),
+)
+
+
+@pytest.mark.parametrize("seed", [2, 6])
+@pytest.mark.parametrize("cuts", [(0.5, 1.0), (0.25, 0.6, 1.0)])
+def test_a_chain_has_the_words_and_standstills_of_the_whole_run(seed, cuts):
+    """Parts of the chain begin in earlier runs; 1e-3: the motion differs within its tolerance."""
+    scene = drawn(seed).replace({"run.samples": "off"})
+    whole, run, before = gd.simulate(scene), None, 0.0
+    for cut in cuts:
+        piece = scene.replace({"run.duration": (cut - before) * scene.run.duration})
+        run, before = gd.simulate(piece, start=run), cut
+    assert outcomes(run)[0].words.replace(" of the chain", "") == outcomes(whole)[0].words
+    assert int(run.standstills) == int(whole.standstills)
+    for name in PARTS:
+        assert float(run[name]) == pytest.approx(float(whole[name]), rel=1e-3, nan_ok=True), name

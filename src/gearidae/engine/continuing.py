@@ -47,6 +47,7 @@ from gearidae.engine.model.state import (
 from gearidae.engine.motion.static_solve import settle_nodes
 from gearidae.engine.observers.balance import open_balance
 from gearidae.engine.observers.exposures.bins import ROWS, exposure_table, exposures_of
+from gearidae.engine.observers.extremes.windows import begin_parts_before
 from gearidae.engine.observers.standing.follow import settle_standing_at
 from gearidae.engine.population.restore import take_joined
 from gearidae.engine.setup.build import make_problem
@@ -276,7 +277,7 @@ def _carry_deflections(source: Model, old_y: Floats, m: Model, y: Floats) -> boo
 
 
 def _begin_stretch(m: Model) -> None:
-    """Begin the counters of the run, its schedules and the parts of it over which speeds are judged."""
+    """Begin the counters of the run and its schedules, and the parts of the chain over which speeds are judged."""
     s, time = m.state, float(m.state.time)
     if m.scene.nodes == 0:
         s.deep_exits = -1
@@ -287,6 +288,7 @@ def _begin_stretch(m: Model) -> None:
     s.extremes["part"] = blank["part"]
     s.extremes.fall = s.extremes.rise = 0.0
     s.extremes.top = s.extremes.bottom = 0.0
+    begin_parts_before(m, time)
     for which in range(len(m.scene.schedule)):
         ends = segment_ends(m.scene.schedule[which], m.tables)
         s.segment[which] = int((ends <= time).sum())

@@ -95,12 +95,27 @@ _PART_FIELDS: Final = (  # from where the part begins to where the run stands
     Quantity("whole_position", "how far the gear had turned by then", PITCHES),
 )
 
+WINDOWS: Final = 80
+"""Windows of equal length, of which start-up, half and last twentieth of a run have whole numbers. A longer chain makes
+two of them one, so that its parts begin within an eightieth of it where they should."""
+
+_WINDOW_FIELDS: Final = (
+    Quantity("lowest", "lowest speed of the gear in it", SPEED),
+    Quantity("highest", "highest speed of the gear in it", SPEED),
+    Quantity("fall", "how far its speed fell in it", SPEED),
+    Quantity("rise", "how far its speed rose in it", SPEED),
+    Quantity("position", "how far the gear had turned where it began", PITCHES),
+)
+
 EXTREMES_FIELDS: Final = (  # at accepted times and located extrema
     flag("begun", "1 once the run has begun"),
     *SPEED_EXTREMES,
     Quantity("top", "highest speed since start-up", SPEED),
     Quantity("bottom", "lowest speed since start-up", SPEED),
-    Quantity("part", "parts of the run", kind=_PART_FIELDS, shape=(len(RUN_PARTS),)),
+    Quantity("part", "parts of the chain", kind=_PART_FIELDS, shape=(len(RUN_PARTS),)),
+    Quantity("window", "of the chain so far", kind=_WINDOW_FIELDS, shape=(WINDOWS,)),
+    Quantity("window_length", "of each", TIME),
+    count("windows", "that have begun", high=WINDOWS),
     flag("is_stuck", "1 while the gear has not turned on by half a pitch since a reversal"),
     Quantity("stuck_time", "time of the first such reversal", TIME),
     Quantity("stuck_position", "how far the gear had turned by then", PITCHES),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from gearidae.compiled import compiled
 from gearidae.contact.history import extreme_gap
+from gearidae.engine.model.checkpoint_record import WINDOWS
 from gearidae.engine.model.state import PHASE, Floats, Model, Record, U, V, W
 from gearidae.engine.motion.observe import rigid_separation, separation
 from gearidae.engine.observers.extremes.forces import first_force, follow_force, force_of_motion, note_corner
@@ -91,6 +92,7 @@ def begin(m: Model, t: float, y: Floats, yp: Floats) -> None:
     else:
         e.lowest_speed = e.highest_speed = y[W]
         e.separation = separation(m, y)
+        e.window_length = m.scene.end / WINDOWS
     k.time, k.last, k.smooth, k.next_part = t, 0, 1, next_part(m)
     _set_point(m, 0, t, y, yp)
     if m.scene.follow.gear != 0:

@@ -14,6 +14,7 @@ from gearidae.contact.history import extreme_gap
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.formulas.interpolation import cubic, cubic_slope
 from gearidae.engine.friction.forces import NO_FORCE, dry_force
+from gearidae.engine.model.checkpoint_record import WINDOWS
 from gearidae.engine.model.state import Floats, Model, Record, U, V
 from gearidae.engine.motion.pair_forces import forces_at
 from gearidae.engine.observers.standing.free_torques import slowest_period
@@ -36,18 +37,30 @@ def note_speed(m: Model, w: float) -> None:
     if e.part[0].begun != 0:
         e.top, e.bottom = max(e.top, w), min(e.bottom, w)
         e.fall, e.rise = max(e.fall, e.top - w), max(e.rise, w - e.bottom)
+    if e.windows > 0:
+        window = e.window[e.windows - 1]
+        window.fall, window.rise = max(window.fall, window.highest - w), max(window.rise, w - window.lowest)
+        window.lowest, window.highest = min(window.lowest, w), max(window.highest, w)
 
 
 @compiled
 def next_part(m: Model) -> float:
-    """Time at which the coming part of the run begins, or a whole period of the slowest harmonic has passed in one."""
-    time, period = math.inf, slowest_period(m)
+    """Time at which the coming window or part begins, or a whole period of the slowest harmonic has passed in one."""
+    e, time, period = m.state.extremes, math.inf, slowest_period(m)
+    if e.windows < WINDOWS:
+        time = e.windows * e.window_length
     for i in range(len(RUN_PARTS)):
-        if m.state.extremes.part[i].begun == 0:
-            return min(time, m.scene.start + RUN_PARTS[i] * (m.scene.end - m.scene.start))
+        if e.part[i].begun == 0:
+            return min(time, _begin_of(m, i))
         if period > 0.0:
-            time = min(time, m.state.extremes.part[i].whole_time + period)
+            time = min(time, e.part[i].whole_time + period)
     return time
+
+
+@compiled(inline=True)
+def _begin_of(m: Model, i: int) -> float:
+    """Time at which a part of the chain begins, if it has not in a run before."""
+    return max(RUN_PARTS[i] * m.scene.end, m.scene.start)
 
 
 @compiled(inline=True)
@@ -133,11 +146,20 @@ def note_hold(m: Model, t: float) -> None:
 
 @compiled
 def _begin_parts(m: Model, last: Record, now: Record) -> None:
-    """Begin those parts of the run whose time has come, and note the whole periods that have passed in others."""
+    """Begin those windows and parts whose time has come, and note the whole periods that have passed in others."""
     e, period = m.state.extremes, slowest_period(m)
     h = now.time - last.time
+    while e.windows < WINDOWS and now.time >= e.windows * e.window_length:
+        share = min(max((e.windows * e.window_length - last.time) / h, 0.0), 1.0) if h > 0.0 else 1.0
+        w = cubic(share, h, last.speed, last.speed_rate, now.speed, now.speed_rate)
+        note_speed(m, w)
+        window = e.window[e.windows]
+        e.windows += 1
+        window.lowest = window.highest = w
+        window.fall = window.rise = 0.0
+        window.position = _place_within(m, last, now, share)
     for i in range(len(RUN_PARTS)):
-        time = m.scene.start + RUN_PARTS[i] * (m.scene.end - m.scene.start)
+        time = _begin_of(m, i)
         if e.part[i].begun != 0 and period > 0.0:
             passed = math.floor((now.time - e.part[i].whole_time) / period)
             if passed > 0.0:
