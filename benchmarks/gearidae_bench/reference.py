@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 import os
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
@@ -118,6 +119,7 @@ _YOUNGER: Final[dict[str, dict[str, Any]]] = {
         "balance": True,
         "passages": True,
         "asperity_events": True,
+        "largest_step": 0.0,
     },
     "contact": {
         "seed": 0,
@@ -141,10 +143,16 @@ _YOUNGER: Final[dict[str, dict[str, Any]]] = {
         0.0,
     ),
     "mesh": {"radius_force": False, "film_damping": 0.0, "film_gap": 0.0},
-    "surface": {"provenance": "", "hamaker": 0.0},
+    "surface": {
+        "provenance": "",
+        "hamaker": 0.0,
+        "contact_angle": 0.0,
+        "bridged": 1.0,
+        "temperature": 298.15,
+    },
     "drive": {"speed_gain": 0.0, "orientation": 0.0, "pin_radius": 0.0},
     "load": {"viscous": 0.0},
-    "coating": {"pairing": "patches", "thickness": 0.0, "hamaker": 0.0},
+    "coating": {"pairing": "patches", "thickness": 0.0, "hamaker": 0.0, "contact_angle": math.radians(110.0)},
 }
 """Keys that the shipped references are older than, with the values that change nothing."""
 

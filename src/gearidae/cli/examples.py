@@ -31,6 +31,7 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         'gearidae surface scan.csv --size "2 um" --unit nm --cutoff "80 nm" -o surface.toml',
         'gearidae surface scan.csv --size "2 um, 1 um" --unit nm --cutoff "80 nm" --case mine.toml -o rough.toml',
     ),
+    "surfaces": ("gearidae surfaces",),
     "compile": ("gearidae compile",),
     "check": ("gearidae check mine.toml", "gearidae check mine.toml --set coating.sam_fraction=0.5"),
     "init": ("gearidae init mine", "gearidae init mine --preset start_up"),
