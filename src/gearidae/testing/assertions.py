@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 import xarray as xr
 
 from gearidae.archive.select import scene_of
 from gearidae.errors import SceneError
+from gearidae.records import ROWS
 from gearidae.scene.differences import first_difference
 from gearidae.testing.comparison import compare
 
@@ -17,24 +18,32 @@ _SHOWN = 12
 
 
 def assert_runs_close(
-    a: xr.Dataset, b: xr.Dataset, *, rtol: float = 1e-6, per: Mapping[str, float] | None = None
+    a: xr.Dataset,
+    b: xr.Dataset,
+    *,
+    rtol: float = 1e-6,
+    per: Mapping[str, float] | None = None,
+    ignore: Sequence[str] = (),
 ) -> None:
-    """Require that two runs, or two sweeps, agree.
+    """Require that a run, or a sweep, agrees with a reference and has all that the reference has.
 
     Parameters
     ----------
     a, b : xarray.Dataset
-        As for `gearidae.compare`.
+        The run and the reference, as for `gearidae.compare`.
     rtol : float, optional
         Largest allowed difference of each variable over its scale [1]; that of events is over the duration. Events must
         be the same in the same order.
     per : mapping of str to float, optional
         Tolerances of single variables in place of `rtol`; infinite for one that may differ, also ``events``.
+    ignore : sequence of str, optional
+        Variables of the reference that the run may lack, also ``events`` and ``passages``.
 
     Raises
     ------
     AssertionError
-        Names each variable that differs by more, by how much, and where; and the first key in which the scenes differ.
+        Names each variable that the run lacks or has in another unit, each that differs by more, by how much, and
+        where; and the first key in which the scenes differ.
     SceneError
         If the datasets cannot be compared, a tolerance is negative or NaN, or `per` names a variable that they do not
         have.
@@ -48,7 +57,7 @@ def assert_runs_close(
     table = compare(a, b)
     if unknown := [name for name in per if name not in table.index]:
         raise SceneError("per", unknown[0], f"must be one of {', '.join(sorted(table.index))}")
-    lines = []
+    lines = list(_lacking(a, b, set(ignore)))
     for name, row in table.iterrows():
         allowed = per.get(str(name), rtol)
         if not row["relative"] <= allowed:
@@ -57,6 +66,22 @@ def assert_runs_close(
         return
     more = [f"  and {len(lines) - _SHOWN} more"] if len(lines) > _SHOWN else []
     raise AssertionError("\n".join([_heading(a, b, len(lines), len(table)), *lines[:_SHOWN], *more]))
+
+
+def _lacking(run: xr.Dataset, reference: xr.Dataset, ignore: set[str]) -> Iterator[str]:
+    """Say what of a reference a run lacks, or has in another unit."""
+    rows = {rows.dim: f"{rows.dim}s" for rows in ROWS}
+    for dim, many in rows.items():
+        there = reference.sizes.get(dim, 0)
+        if there and not run.sizes.get(dim, 0) and many not in ignore:
+            yield f"  {many}: the run has none, the reference has {there}"
+    for name, variable in reference.data_vars.items():
+        if name in ignore or set(rows) & set(variable.dims):
+            continue
+        if name not in run.variables:
+            yield f"  {name}: the run lacks it"
+        elif (units := run[name].attrs.get("units")) != (expected := variable.attrs.get("units")):
+            yield f"  {name}: is in {units}, and in {expected} in the reference"
 
 
 def _heading(a: xr.Dataset, b: xr.Dataset, apart: int, total: int) -> str:
