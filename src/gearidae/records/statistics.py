@@ -15,6 +15,10 @@ class Ending(Enum):
 
     FINISHED = ("finished", "")
     CHATTER = ("chatter", "events followed each other while the time did not advance")
+    LAW_CHATTER = (
+        "law_chatter",
+        "a registered torque law chatters, it switches every few steps: give it a hysteresis or a slope, not a jump",
+    )
     MANY_EVENTS = (
         "many_events",
         "asperities joined and detached more than 100000 times in a mesh cycle, or hundreds at once",

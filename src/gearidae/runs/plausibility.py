@@ -7,6 +7,7 @@ import math
 from typing import TYPE_CHECKING, Final
 
 from gearidae.scene.prefixes import with_prefix
+from gearidae.torques import torque_law
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -33,7 +34,7 @@ def doubts(scene: Scene) -> list[str]:
     list of str
         Sentences, each with the key and the numbers; empty for most scenes.
     """
-    parts = (_sizes, _resistance, _bodies, _path_force, _idle, _inertias)
+    parts = (_sizes, _resistance, _bodies, _path_force, _idle, _inertias, _laws)
     return [line for part in parts for line in part(scene)]
 
 
@@ -41,6 +42,25 @@ def log_doubts(scene: Scene) -> None:
     """Log each of the `doubts` about a scene as a warning."""
     for doubt in doubts(scene):
         log.warning("%s: %s", scene.name, doubt)
+
+
+def _laws(scene: Scene) -> list[str]:
+    """Name registered laws that jump in time and do not say so."""
+    lines = []
+    for key, shaft in (("drive.law", scene.drive), ("load.law", scene.load)):
+        if shaft is None or shaft.law is None or torque_law(shaft.law.name).is_declared:
+            continue
+        from gearidae.engine.torques.law import JUMP_LOOKS, law_knots  # with numba, and few scenes need it
+
+        times = law_knots(shaft.law.name, shaft.law.numbers(), 0.0, scene.run.duration)
+        if times:
+            more = f" and {len(times) - 1} times later" if len(times) > 1 else ""
+            lines.append(
+                f"{key} = {shaft.law.name} jumps at {times[0]:.6g} s{more}, as {JUMP_LOOKS} looks at it show; shorter "
+                f"pulses than {with_prefix(scene.run.duration / JUMP_LOOKS, 's')} may be missed: register it with "
+                "knots=, the times at which it jumps, or switch=, a function whose zeros are where it does"
+            )
+    return lines
 
 
 def _sizes(scene: Scene) -> list[str]:

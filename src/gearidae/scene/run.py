@@ -72,6 +72,9 @@ class Run(Group):
         default=1e-6,
         description="relative tolerance of the solver; 1e-4 gives the adhesion loss of the shipped cases to 0.1 %",
     )
+    largest_step: Annotated[float | None, Quantity(unit="s", at_least=1e-30, at_most=1e12)] = Field(
+        default=None, description="longest step of the solver; by default as long as the tolerance allows"
+    )
     method: Literal["auto", "bdf"] = Field(
         default="auto",
         description="bdf: IDA's own formulas, iteration and root search throughout; auto: Adams' where they are better",

@@ -25,6 +25,7 @@ _FIRST_KNOT = 5
         Parameter("frequency", "Hz", over_time=True, description="of the forces, a number or a schedule"),
     ),
     force=True,
+    knots=lambda p, t_end: p[_FIRST_KNOT::2],
 )
 def microengine(t: float, angle: float, speed: float, p: Parameters) -> tuple[float, float, float]:
     """Torque [N m] of two comb drives on the pin, ``M = r (Fy cos(angle) - Fx sin(angle))``, and the force on it [N].

@@ -5,7 +5,7 @@ from __future__ import annotations
 from gearidae.torques.registry import Parameters, register_torque
 
 
-@register_torque("motor", parameters=2)
+@register_torque("motor", parameters=2, knots=lambda p, t_end: ())
 def motor(t: float, speed: float, p: Parameters) -> float:
     """Torque [N m] of a motor, ``M0 (1 - speed / w0)``.
 

@@ -71,6 +71,10 @@ class TorqueLaw:
         Whether the function has four arguments.
     has_force : bool
         Whether it returns the force on the shaft, too.
+    knots : callable, optional
+        ``knots(p, t_end)``: times [s] at which it jumps or has a kink.
+    switch : callable, optional
+        ``switch(t, angle, speed, p)``: a function that changes its sign where it switches.
     """
 
     name: str
@@ -79,13 +83,25 @@ class TorqueLaw:
     named: tuple[Parameter, ...] = ()
     takes_angle: bool = False
     has_force: bool = False
+    knots: Callable[..., Any] | None = None
+    switch: Callable[..., Any] | None = None
+
+    @property
+    def is_declared(self) -> bool:
+        """Whether it says where it jumps, if it does; else it is watched."""
+        return self.knots is not None or self.switch is not None
 
 
 _LAWS: Final = Registry[TorqueLaw]("gearidae.torques", "law.name", "torque law")
 
 
 def register_torque(
-    name: str, *, parameters: int | Iterable[str | Parameter] = 0, force: bool = False
+    name: str,
+    *,
+    parameters: int | Iterable[str | Parameter] = 0,
+    force: bool = False,
+    knots: Callable[..., Any] | None = None,
+    switch: Callable[..., Any] | None = None,
 ) -> Callable[[Law], Law]:
     """Register a torque law by a name; a decorator of its function.
 
@@ -97,12 +113,14 @@ def register_torque(
     the pinion forward. The torque of a load resists the motion of the gear in both directions (a negative sum counts
     as zero), so that a viscous load is ``c abs(speed)``.
 
-    It must be continuous in time, angle and speed and finite at rest. The engine also calls it a ten-thousandth of the
-    scene's natural time unit before and after a time, along the current motion. Use ``harmonic`` for a torque that
-    varies much faster than gears and contacts, in time or with the angle, and ``schedule`` for one that jumps: the
-    steps resolve their frequencies, orders and knots. The law of what is held at rest is looked at 100,000 times in a
-    run: a shorter pulse of it may be missed, one of a harmonic or of a schedule is not. Newton's iteration leaves out
-    the slopes of the law, which is allowed if a shaft needs many steps to follow the law.
+    It must be finite at rest. Where it jumps or has a kink, `knots` or `switch` say so: the solver stops there and
+    begins anew, in motion and at rest. A law that says nothing is looked at 100,000 times in a run, at fixed angle and
+    speed: its jumps in time are found to rounding, and a shorter pulse may be missed. In motion each step of the native
+    driver compares it with its interpolation, at three times within the step, and is made shorter until both agree.
+    The engine also calls a law a ten-thousandth of the scene's natural time unit before and after a time, along the
+    current motion. Use ``harmonic`` for a torque that varies much faster than gears and contacts, in time or with the
+    angle. Newton's iteration leaves out the slopes of the law, which is allowed if a shaft needs many steps to follow
+    the law.
 
     Parameters
     ----------
@@ -116,6 +134,12 @@ def register_torque(
         pinion's shaft, in axes fixed to the frame. The x axis goes from the centre of the pinion to that of the gear,
         turned by ``drive.orientation``; y is ahead of it as the pinion turns. Such a drive pushes with a pin: its force
         goes through the pinion's hub and the pin joint. Without it a drive is a couple. A load has no force.
+    knots : callable, optional
+        ``knots(p, t_end)`` of the parameters and the time of the end of the run [s]: the times at which a law of time
+        jumps or has a kink. Times before the run's start and behind its end do not count.
+    switch : callable, optional
+        ``switch(t, angle, speed, p)``: changes its sign where the law jumps, and nowhere else. Its zeros are located
+        like every event; two of them within one step are not seen (``run.largest_step``). Numba compiles it.
 
     Returns
     -------
@@ -126,7 +150,7 @@ def register_torque(
     ------
     SceneError
         If the name is not an identifier, or that of another law, or the parameters are neither a number in range nor
-        names, or the function takes neither three nor four arguments.
+        names, or the function takes neither three nor four arguments, `knots` not two, or `switch` not four.
 
     Examples
     --------
@@ -146,13 +170,21 @@ def register_torque(
     if not 0 <= count <= MOST_PARAMETERS:
         raise SceneError("parameters", count, f"must be a whole number in 0..{MOST_PARAMETERS}")
 
+    for key, given, wanted in (("knots", knots, "p, t_end"), ("switch", switch, "t, angle, speed, p")):
+        if given is not None and (
+            not callable(given)
+            or len(inspect.signature(getattr(given, "py_func", given)).parameters) != wanted.count(",") + 1
+        ):
+            raise SceneError(key, given, f"must be a function of {wanted}")
+
     def register(function: Law) -> Law:
         arguments = len(inspect.signature(getattr(function, "py_func", function)).parameters)
         if arguments not in (3, 4):
             raise SceneError(
                 "law.name", name, f"takes {arguments} arguments; must take t, speed, p or t, angle, speed, p"
             )
-        _LAWS.add(name, TorqueLaw(name, function, count, named, takes_angle=arguments == 4, has_force=force))
+        law = TorqueLaw(name, function, count, named, arguments == 4, force, knots, switch)
+        _LAWS.add(name, law)
         return function
 
     return register

@@ -23,6 +23,7 @@ import numpy as np
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
+from gearidae.engine.events.law_switches import law_guard
 from gearidae.engine.events.sliding import sliding_guard
 from gearidae.engine.model.state import DRIVE, LOAD, PHASE, Floats, Model, U
 from gearidae.engine.pairs.shaft_angle import torque_angle
@@ -44,9 +45,10 @@ _EPS: Final = 2.0 * float(np.finfo(float).eps)
 
 @compiled
 def _margin(m: Model, t: float, y: Floats) -> float:
-    """What is left of what holds gears at rest."""
+    """What is left of what holds gears at rest, until a law switches."""
     m.state.progress.guard_evaluations += 1
-    return sliding_guard(m, t, y)
+    held = sliding_guard(m, t, y)
+    return min(held, law_guard(m, t, y)) if m.scene.law_switches != 0 else held
 
 
 @compiled_once(SOLVER)

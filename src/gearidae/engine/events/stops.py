@@ -10,6 +10,7 @@ import math
 from typing import Final
 
 from gearidae.compiled import compiled
+from gearidae.engine.events.law_switches import set_law_window
 from gearidae.engine.events.record import record
 from gearidae.engine.model.state import PHASE, SCHEDULES, STOPS, Floats, Model
 from gearidae.engine.torques.schedule import enter_segment
@@ -41,6 +42,7 @@ def pass_knot(m: Model, t: float, events: Floats, count: int) -> int:
         enter_segment(m, which, t)
         entered += m.state.segment[which]
     m.state.next_knot += 1
+    set_law_window(m)
     if entered == 0:
         return count
     return record(m, events, count, t, _SCHEDULE_KNOT, 0, _NO_FLANK, 0.0)

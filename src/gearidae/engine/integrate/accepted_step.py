@@ -9,6 +9,7 @@ from gearidae.engine.compiling import SOLVER
 from gearidae.engine.events.asperity_events import record_switches, switch_asperities
 from gearidae.engine.events.events import ROOT, STOP, chatters, guard, handle_mesh
 from gearidae.engine.events.histories import accept
+from gearidae.engine.events.law_switches import laws_chatter, note_law_jump, set_law_sides, set_law_window
 from gearidae.engine.events.pair_events import find_event, take_event
 from gearidae.engine.events.record import EVENTS_AT_ONCE
 from gearidae.engine.events.sliding import follow_creeping, follow_sliding
@@ -17,6 +18,7 @@ from gearidae.engine.integrate.driver import (
     BOUND_EXCEEDED,
     CHATTER,
     CHECKPOINT_STEPS,
+    LAW_CHATTER,
     LIGHT,
     MANY_EVENTS,
     Output,
@@ -72,6 +74,8 @@ def finish_step(
         driver.error = BOUND_EXCEEDED
     if in_flight(m):
         m.state.progress.flight_steps += 1
+    if m.work.law_jumps != 0 and laws_chatter(m):
+        driver.error = LAW_CHATTER
     afresh = change_wanted(m, y, yp) or comes_to_rest(m, t, y) or abs(y[PHASE]) > PHASE_HIGH
     if flag == ROOT:
         afresh |= handle(m, t, y, yp, out)
@@ -132,6 +136,9 @@ def handle(m: Model, t: float, y: Floats, yp: Floats, out: Output) -> bool:
     if m.scene.friction.on != 0:
         count, jumped = follow_sliding(m, t, y, events, count)
         restart |= jumped
+    if m.scene.law_switches != 0 and set_law_sides(m, t, y):
+        note_law_jump(m)
+        restart = True
     driver.events = count
     observers.resume(m, t, y, crossed, joined)
     if crossed and m.scene.follow.passages != 0:
@@ -144,6 +151,9 @@ def handle(m: Model, t: float, y: Floats, yp: Floats, out: Output) -> bool:
 @compiled_once(SOLVER)
 def prepare_start(m: Model, t: float, y: Floats, yp: Floats) -> None:
     """Set consistent rates, and what the observers of a run know of the time before, for a start at t."""
+    set_law_window(m)
+    if m.scene.law_switches != 0:
+        set_law_sides(m, t, y)
     begin_rest(m, t, y)
     set_rates(m, t, y, yp)
     observers.begin(m, t, y, yp)

@@ -26,6 +26,7 @@ __all__ = [
     "BOUND_EXCEEDED",
     "CHATTER",
     "CONVERGENCE_FAILURES_HIGH",
+    "LAW_CHATTER",
     "LIGHT",
     "MANY_EVENTS",
     "MODEL_CHANGES",
@@ -54,9 +55,10 @@ CHECKPOINT_STEPS = 200_000
 
 CONVERGENCE_FAILURES_HIGH = 40
 """Failures of Newton's iteration in one step, each of which quarters it: a step out of long flight lands in a tooth."""
-CHATTER, BOUND_EXCEEDED, LIGHT, MANY_EVENTS = 1, 2, 3, 4
+CHATTER, BOUND_EXCEEDED, LIGHT, MANY_EVENTS, LAW_CHATTER = 1, 2, 3, 4, 5
 """What a driver may end a run with of its own: crowded events, a gap beyond the model's bound, contacts of elastic
-bodies that have been light for long, more events of asperities than can be followed."""
+bodies that have been light for long, more events of asperities than can be followed, a law that
+switches in every step."""
 MODEL_CHANGES: Final = (BOUND_EXCEEDED, LIGHT)
 """Those from which a run goes on, with another contact model."""
 
@@ -67,6 +69,7 @@ _FLAGS = {
     -4: Ending.NO_CONVERGENCE,
     CHATTER: Ending.CHATTER,
     MANY_EVENTS: Ending.MANY_EVENTS,
+    LAW_CHATTER: Ending.LAW_CHATTER,
     LIGHT: Ending.LIGHT,
 }
 

@@ -18,6 +18,7 @@ import math
 from typing import Final, NamedTuple
 
 from gearidae.compiled import compiled
+from gearidae.engine.events.law_switches import misses_laws
 from gearidae.engine.formulas import adams
 from gearidae.engine.integrate.correction import correct
 from gearidae.engine.integrate.step_control import below_gap_bound, control_step, max_stable_order
@@ -109,7 +110,7 @@ def iterate(n: int, m: Model, attempt: Attempt) -> int:
             for j in range(n):
                 a.new_state[j] = predicted[j] + correction[j]
                 a.new_differences[0, j] = cj * correction[j] + a.predicted_rates[j]
-            if below_gap_bound(m, a):
+            if below_gap_bound(m, a) or (m.scene.law_watched != 0 and misses_laws(m, attempt.step)):
                 return FAILED
             if by_adams:
                 control_step(n, m, attempt.step, correction, attempt.weights)

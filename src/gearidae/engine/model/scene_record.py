@@ -44,6 +44,7 @@ TORQUE: Final = record_type(
     ("takes_angle", INT),  # 1 if the torque depends on the shaft's angle
     ("law_count", INT),  # parameters of the law, whose address is in `WORK` [1]
     ("law_at", INT),  # the parameters among the tables [index]
+    ("law_unknown", INT),  # 1 if the law says nothing of where it jumps
     ("law_torque", REAL),  # unit of the law's torque [N m]
     ("law_speed", REAL),  # unit of the shaft's speed [rad/s]
     ("angle_unit", REAL),  # unit of the shaft's angle: sigma over the base radius [rad]
@@ -229,6 +230,9 @@ SCENE: Final = record_type(
     ("root_spacing", REAL),  # times 1 + t [tau]
     ("torque_omega", REAL),  # highest angular frequency of the torques that steps follow [rad/tau]
     ("longest_step", REAL),  # that harmonics, laws and cubic schedules allow; 0 for any [tau]
+    ("largest_step", REAL),  # that the scene allows; 0 for any [tau]
+    ("law_switches", INT),  # 1 if a law has a function whose zeros are where it switches
+    ("law_watched", INT),  # 1 if it has, or says nothing of where it jumps, so that each step looks at it
     (
         "rest_look",
         REAL,

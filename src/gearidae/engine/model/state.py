@@ -116,7 +116,7 @@ def plain(record: Record) -> SimpleNamespace:
 def blank_work(work: Record) -> None:
     """Forget what a run has left in the work records; how a driver searches and where torque laws lie stay."""
     fresh = np.zeros(1, WORK)[0]
-    fresh["torque_law"] = work["torque_law"]
+    fresh["torque_law"], fresh["torque_switch"] = work["torque_law"], work["torque_switch"]
     for name in ("as_ida", "sharpness"):
         fresh.search[name] = work.search[name]
     fresh.driver.pending = -1  # the driver is to start

@@ -278,6 +278,16 @@ WORK: Final = record_type(
     ("driver", DRIVER),
     ("piece", INT, (SCHEDULES,)),  # of a cubic schedule, last used; where the next search begins [index]
     ("torque_law", INT, (2,)),  # where the compiled torque law of either shaft lies; 0 without one [address]
+    (
+        "torque_switch",
+        INT,
+        (2,),
+    ),  # where the function lies whose zeros are where it switches; 0 without one [address]
+    ("law_side", REAL, (2,)),  # its sign since the last start [1]
+    ("law_from", REAL),  # time of the last knot, just behind it [tau]
+    ("law_until", REAL),  # and of the next, just before it; 0 outside a run [tau]
+    ("law_jumps", INT),  # jumps of laws in close succession [1]
+    ("law_steps", INT),  # steps since the last of them [1]
     ("contact", CONTACT, (2 * SLOTS_HIGH,)),  # of a population
     ("friction", FRICTION_WORK),  # of friction
 )

@@ -41,7 +41,7 @@ from gearidae.engine.setup.checkpoint import scene_digest
 from gearidae.engine.setup.problem import Problem
 from gearidae.engine.setup.start import AT_ONCE, Start
 from gearidae.engine.setup.tables import Tables
-from gearidae.engine.torques.law import law_address
+from gearidae.engine.torques.law import law_address, switch_address
 from gearidae.engine.torques.schedule import (
     segment_ends,
 )
@@ -151,6 +151,7 @@ def _gear_problem(scene: GearScene, nodes: Nodes | None, begin: Start) -> Proble
     for shaft, law in ((DRIVE, drive), (LOAD, load)):
         if law.law is not None:
             model.work.torque_law[shaft] = law_address(law.law.name)
+            model.work.torque_switch[shaft] = switch_address(law.law.name)
     whole, phase = divmod(start.mesh_phase, 1.0)  # the solver's phase stays small: whole pitches are turns
     outside = phase - min(phase, float(s.contact_ratio))
     relief = float(0.5 * s.relief_curvature * outside**2)

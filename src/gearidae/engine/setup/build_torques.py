@@ -9,7 +9,7 @@ import numpy as np
 from gearidae.engine.model.state import DRIVE, LOAD, SPEED, STOPS, Floats, Record
 from gearidae.engine.setup.tables import Tables
 from gearidae.engine.torques.harmonic import common_period, pack_harmonics
-from gearidae.engine.torques.law import largest_torque
+from gearidae.engine.torques.law import largest_torque, law_knots
 from gearidae.engine.torques.schedule import LEAST_CUBIC, fastest_schedule, pack_schedule, steep_knots
 from gearidae.scene import Drive, GearScene, Knots, Load, Scene
 from gearidae.torques import torque_law
@@ -66,7 +66,7 @@ def add_torques(s: Record, tables: Tables, scene: GearScene, begin: float) -> No
     """Lay out the torques of both shafts and the times of their knots, and set what the run follows from them."""
     tau, force = float(s.time_unit), float(s.force_unit)
     shafts = ((DRIVE, scene.drive, float(s.pinion_radius)), (LOAD, scene.load, float(s.gear_radius)))
-    knots = set()
+    knots: set[float] = set()
     fastest = 0.0
     for shaft, law, radius in shafts:
         torque, unit = s.torque[shaft], force * radius
@@ -84,8 +84,14 @@ def add_torques(s: Record, tables: Tables, scene: GearScene, begin: float) -> No
         if law.law is not None:
             numbers = law.law.numbers()
             torque.law_count, torque.law_at = len(numbers), tables.add(numbers)
-            if torque_law(law.law.name).takes_angle:
+            declared = torque_law(law.law.name)
+            if declared.takes_angle or declared.switch is not None:
                 torque.takes_angle, highest = 1, max(highest, 1.0)
+            torque.law_unknown = int(not declared.is_declared)
+            s.law_switches |= int(declared.switch is not None)
+            s.law_watched |= int(torque.law_unknown or s.law_switches)
+            end = begin + scene.run.duration
+            knots |= {t / tau for t in law_knots(law.law.name, numbers, begin, end)}
         torque.takes_angle = int(torque.takes_angle or bool(orders))
         s.angle_omega = max(float(s.angle_omega), highest * float(s.base_pitch) / radius)
         fastest = max([fastest, *(frequency for _, frequency, _ in harmonics)])
@@ -141,6 +147,7 @@ def set_run(s: Record, tables: Tables, scene: Scene, knots: set[float], begin: f
     tau = float(s.time_unit)
     start, end = begin / tau, (begin + scene.run.duration) / tau
     s.start, s.end = start, end
+    s.largest_step = (scene.run.largest_step or 0.0) / tau
     kept = {t / tau for t in scene.run.checkpoints}
     times = sorted(t for t in knots | kept if start < t < end)
     # of knots that the solver cannot tell apart the last one serves for all: schedules enter every segment up to it

@@ -131,6 +131,8 @@ class Problem:
         steepest = max(fastest_schedule(schedule, m.tables, 0.0) for schedule in s.schedule)
         fastest = max(steepest, float(s.torque_omega) / FOLLOWED)
         s.longest_step = 1.0 / fastest if fastest > 0.0 else 0.0
+        if s.largest_step > 0.0:
+            s.longest_step = min(float(s.largest_step), float(s.longest_step) or math.inf)
         s.free_step = self._longest_free_step()
         return m
 

@@ -23,7 +23,7 @@ from numba.extending import intrinsic
 from gearidae.compiled import compiled
 from gearidae.engine.model.state import Model
 from gearidae.errors import SceneError
-from gearidae.torques import torque_law
+from gearidae.torques import TorqueLaw, torque_law
 
 STEP: Final = 1e-4
 """Over tau, by which a law's rate looks to either side: contacts vibrate with about a radian a tau."""
@@ -31,6 +31,18 @@ LOOKS: Final = 65
 """Times in a run at which the size of a law's torque is looked at,"""
 ANGLES: Final = 24
 """and angles of the shaft at each of them."""
+JUMP_LOOKS: Final = 100_000
+"""Times in a run at which a law that says nothing is looked at for jumps in time."""
+HALVINGS: Final = 100
+"""Of the time between two looks, at most: a jump is then known to rounding."""
+LEAST_JUMP: Final = 1e-6
+"""Change between two looks, over the range of the law, below which it is no jump but rounding."""
+SHIFT: Final = 8.0 * float(np.finfo(float).eps)
+"""Of a knot's time: by so much both sides of it are off, as its time over tau is rounded."""
+MISFIT: Final = 0.3
+"""Fourth difference of five values of a law in a step, over their range, above which it jumps or has a kink there.
+
+A jump between any two of them has 1 or more; a harmonic that turns by a radian in the step has 0.03."""
 
 _SIGNATURE = types.float64(
     types.float64,
@@ -91,6 +103,103 @@ def largest_torque(name: str, parameters: Sequence[float], speed: float, duratio
     return max((value for value in values if math.isfinite(value)), default=0.0)
 
 
+def switch_address(name: str) -> int:
+    """Address of the compiled function that changes its sign where a law switches; 0 if it has none.
+
+    Raises
+    ------
+    SceneError
+        If numba cannot compile it to a function that returns a number.
+    """
+    switch = torque_law(name).switch
+    if switch is None:
+        return 0
+    try:
+        return int(_compile(switch, True, False).address)
+    except NumbaError as error:
+        reason = str(error).strip().partition("\n")[0]
+        raise SceneError(
+            "law.name", name, f"numba cannot compile the switch of this law: {reason}"
+        ) from error
+
+
+def law_knots(name: str, parameters: Sequence[float], begin: float, end: float) -> list[float]:
+    """Times [s] at which a law jumps, as it says itself, or as they are found where it says nothing.
+
+    Parameters
+    ----------
+    name : str
+        Of a registered law.
+    parameters : sequence of float
+    begin, end : float
+        Of the run [s].
+
+    Raises
+    ------
+    SceneError
+        If what the law says is no list of finite times.
+    """
+    law, numbers = torque_law(name), np.array(parameters, dtype=np.float64)
+    if law.knots is None:
+        return [] if law.switch is not None else found_jumps(law, numbers, begin, end)
+    try:
+        times = np.array(law.knots(numbers, end), dtype=np.float64).ravel()
+    except (TypeError, ValueError, IndexError, ArithmeticError) as error:
+        raise SceneError("law.name", name, f"its knots are no list of times: {error}") from error
+    if not np.isfinite(times).all():
+        raise SceneError("law.name", name, "its knots must be finite times")
+    return [float(t) for t in times]
+
+
+def found_jumps(law: TorqueLaw, numbers: Any, begin: float, end: float) -> list[float]:
+    """Times [s] just behind the jumps in time of a law, at rest and at 1 rad and 1 rad/s."""
+    times = np.linspace(begin, end, JUMP_LOOKS + 1)
+    try:
+        search = _jump_search(law.function, law.takes_angle, law.has_force)
+        return sorted({float(t) for at in (0.0, 1.0) for t in search(times, at, numbers)})
+    except NumbaError as error:
+        reason = str(error).strip().partition("\n")[0]
+        raise SceneError("law.name", law.name, f"numba cannot compile this torque law: {reason}") from error
+
+
+@cache
+def _jump_search(function: Callable[..., Any], takes_angle: bool, has_force: bool) -> Any:
+    """Compile the search for jumps of a law."""
+    law: Any = numba.njit(error_model="numpy")(getattr(function, "py_func", function))
+
+    @numba.njit(error_model="numpy")
+    def torque(t: float, at: float, p: Any) -> Any:
+        number = law(t, at, at, p) if takes_angle else law(t, at, p)
+        return number[0] if has_force else number
+
+    @numba.njit(error_model="numpy")
+    def search(times: Any, at: float, p: Any) -> Any:
+        values = np.empty(times.size)
+        for i in range(times.size):
+            values[i] = torque(times[i], at, p)
+        enough, found = LEAST_JUMP * (values.max() - values.min()), []
+        for i in range(times.size - 1):
+            change = abs(values[i + 1] - values[i])
+            if not change > enough:
+                continue
+            a, b, low, high = times[i], times[i + 1], values[i], values[i + 1]
+            for _ in range(HALVINGS):
+                middle = 0.5 * (a + b)
+                # of what is smooth, the change in the half shrinks with it
+                if not a < middle < b or abs(high - low) < 0.5 * change:
+                    break
+                value = torque(middle, at, p)
+                if abs(value - low) > abs(high - value):
+                    b, high = middle, value
+                else:
+                    a, low = middle, value
+            if abs(high - low) >= 0.5 * change and b - a <= 1e-15 * abs(b):
+                found.append(b)
+        return np.array([*found, np.inf])[:-1]  # numba does not know the type of an empty list
+
+    return search
+
+
 def _callback(name: str) -> Any:
     try:
         law = torque_law(name)
@@ -144,10 +253,27 @@ _call: Any = intrinsic(_typed)
 
 @compiled
 def _number(m: Model, shaft: int, which: int, t: float, angle: float, speed: float) -> float:
-    """Number of a shaft's law in SI units, at a scaled time and speed and an angle [rad]."""
+    """Number of a shaft's law in SI units, at a scaled time and speed and an angle [rad].
+
+    Between two knots the law is that of this time, on both of them, too, as the segments of schedules are.
+    """
+    if m.work.law_until > 0.0:
+        t = min(max(t, m.work.law_from), m.work.law_until)
+    return _of_law(m, m.work.torque_law[shaft], shaft, which, t, angle, speed)
+
+
+@compiled
+def switch_value(m: Model, shaft: int, t: float, angle: float, speed: float) -> float:
+    """Function that changes its sign where a shaft's law switches, of a law that has one."""
+    return _of_law(m, m.work.torque_switch[shaft], shaft, _TORQUE, t, angle, speed)
+
+
+@compiled
+def _of_law(m: Model, address: int, shaft: int, which: int, t: float, angle: float, speed: float) -> float:
+    """Number of a compiled function of a shaft's law."""
     torque = m.scene.torque[shaft]
     return _call(
-        m.work.torque_law[shaft],
+        address,
         t * m.scene.time_unit,
         angle,
         speed * torque.law_speed,
@@ -167,10 +293,19 @@ def law_value(m: Model, shaft: int, t: float, angle: float, speed: float) -> flo
 @compiled
 def law_rate(m: Model, shaft: int, t: float, angle: float, speed: float, acceleration: float) -> float:
     """Rate of change of `law_value` along the motion, by a central difference; one-sided where the run begins."""
-    low, high = max(t - STEP, 0.0), t + STEP
+    low, high = _around(m, t)
     before = law_value(m, shaft, low, *_moved(m, shaft, low - t, angle, speed, acceleration))
     after = law_value(m, shaft, high, *_moved(m, shaft, high - t, angle, speed, acceleration))
     return (after - before) / (high - low)
+
+
+@compiled(inline=True)
+def _around(m: Model, t: float) -> tuple[float, float]:
+    """Times to either side of a time, within the run and between two knots, for a difference of the law."""
+    low, high = max(t - STEP, 0.0), t + STEP
+    if m.work.law_until > 0.0:  # beyond, the law stays as it is there, and the difference would be too small
+        low, high = max(low, m.work.law_from), min(high, m.work.law_until)
+    return low, high
 
 
 @compiled(inline=True)
@@ -193,7 +328,38 @@ def law_force_rate(
     m: Model, shaft: int, t: float, angle: float, speed: float, acceleration: float
 ) -> tuple[float, float]:
     """Rates of `law_force` along the motion [N/tau], as `law_rate`."""
-    low, high = max(t - STEP, 0.0), t + STEP
+    low, high = _around(m, t)
     before = law_force(m, shaft, low, *_moved(m, shaft, low - t, angle, speed, acceleration))
     after = law_force(m, shaft, high, *_moved(m, shaft, high - t, angle, speed, acceleration))
     return (after[0] - before[0]) / (high - low), (after[1] - before[1]) / (high - low)
+
+
+@compiled
+def law_misfit(
+    m: Model, shaft: int, t: float, h: float, first: tuple[float, float], last: tuple[float, float]
+) -> float:
+    """Impulse over the base radius that a step may miss of a shaft's law, which has a jump or a kink in it; 0 else.
+
+    Parameters
+    ----------
+    m : Model
+    shaft : int
+    t, h : float
+        Beginning and length of the step, over tau.
+    first, last : tuple of two floats
+        Angle [rad] and scaled speed of the shaft at both ends.
+    """
+    fourth, low, high, sign = 0.0, math.inf, -math.inf, 1.0
+    for i in range(5):
+        share = 0.25 * i
+        value = law_value(
+            m,
+            shaft,
+            t + share * h,
+            first[0] + share * (last[0] - first[0]),
+            first[1] + share * (last[1] - first[1]),
+        )
+        low, high = min(low, value), max(high, value)
+        fourth += sign * (1.0 if i in (0, 4) else 6.0 if i == 2 else 4.0) * value
+        sign = -sign
+    return h * (high - low) if abs(fourth) > MISFIT * (high - low) else 0.0

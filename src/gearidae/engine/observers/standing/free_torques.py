@@ -25,11 +25,12 @@ def _angle(m: Model, i: int, shaft: int, travel: float) -> float:
 @compiled_once(SOLVER)
 def free_torque(m: Model, i: int, shaft: int, t: float, travel: float, speed: float) -> float:
     """Torque of a shaft over its base radius, scaled, of free gears from the zero `i`; the load's is dry resistance."""
-    if shaft != LOAD:
-        return torque_force(m, DRIVE, t, _angle(m, i, DRIVE, travel), speed)
-    if m.scene.dry == 0:
+    if shaft == LOAD and m.scene.dry == 0:
         return 0.0
-    return max(torque_force(m, LOAD, t, _angle(m, i, LOAD, travel), speed), 0.0)
+    until, m.work.law_until = m.work.law_until, 0.0  # laws at any time, not in the present piece
+    torque = torque_force(m, shaft, t, _angle(m, i, shaft, travel), speed)
+    m.work.law_until = until
+    return torque if shaft != LOAD else max(torque, 0.0)
 
 
 @compiled

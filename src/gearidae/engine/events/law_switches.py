@@ -1,0 +1,124 @@
+"""Where registered torque laws switch: knots in time, and zeros of a function of time, angle and speed."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from gearidae.compiled import compiled, compiled_once
+from gearidae.engine.compiling import SOLVER
+from gearidae.engine.model.state import DRIVE, PHASE, Floats, Model, U, V, W
+from gearidae.engine.pairs.shaft_angle import torque_angle
+from gearidae.engine.torques.law import SHIFT, law_misfit, switch_value
+
+SHARE: Final = 0.5
+"""Of the tolerance of a speed: impulse over the mass that a step may miss of a law that jumps in it."""
+NOTED: Final = 0.01
+"""Of that, from which a jump is counted: the error test may keep the steps of a law that chatters below it."""
+JUMPS_HIGH: Final = 300
+"""Jumps of laws in close succession, beyond which they chatter."""
+APART: Final = 12
+"""Steps without a jump after which the next is no succession; a start takes as many to reach its step length."""
+
+
+@compiled
+def set_law_window(m: Model) -> None:
+    """Set the times between which laws are those of the present piece: from the last knot to the next stop."""
+    next_knot, last, coming = m.state.next_knot, m.scene.start, m.scene.end
+    if next_knot > 0:
+        last = m.tables[m.scene.knots_at + next_knot - 1]
+    if next_knot < m.scene.knot_count:
+        coming = m.tables[m.scene.knots_at + next_knot]
+    m.work.law_from, m.work.law_until = last * (1.0 + SHIFT), coming * (1.0 - SHIFT)
+
+
+@compiled
+def _speed(m: Model, shaft: int, y: Floats) -> float:
+    """Surface velocity of a shaft; the slope of the static error is left out."""
+    return y[V] + y[W] if shaft == DRIVE else y[W]
+
+
+@compiled
+def _value(m: Model, shaft: int, t: float, y: Floats) -> float:
+    return switch_value(m, shaft, t, torque_angle(m, shaft, y[U], y[PHASE]), _speed(m, shaft, y))
+
+
+@compiled_once(SOLVER)
+def law_guard(m: Model, t: float, y: Floats) -> float:
+    """Least of the functions whose zeros are where laws switch, each with the sign that makes it positive now."""
+    least = math.inf
+    for shaft in range(2):
+        if m.work.torque_switch[shaft] != 0 and m.work.law_side[shaft] != 0.0:
+            least = min(least, m.work.law_side[shaft] * _value(m, shaft, t, y))
+    return least
+
+
+@compiled_once(SOLVER)
+def set_law_sides(m: Model, t: float, y: Floats) -> bool:
+    """Note on which side of their zeros these functions are; whether one has changed its side since."""
+    changed = False
+    for shaft in range(2):
+        if m.work.torque_switch[shaft] != 0:
+            side = math.copysign(1.0, _value(m, shaft, t, y))
+            changed |= m.work.law_side[shaft] == -side
+            m.work.law_side[shaft] = side
+    return changed
+
+
+@compiled
+def note_law_jump(m: Model) -> None:
+    """Count a jump of a law: a zero of its own function, or one within a step that is tried."""
+    m.work.law_jumps += 1
+    m.work.law_steps = 0
+
+
+@compiled(inline=True)
+def laws_chatter(m: Model) -> bool:
+    """Count an accepted step; whether laws have jumped too often without a while between."""
+    m.work.law_steps += 1
+    if m.work.law_steps > APART:
+        m.work.law_jumps = 0
+    return bool(m.work.law_jumps > JUMPS_HIGH)
+
+
+@compiled
+def _returns(
+    m: Model, shaft: int, t: float, h: float, first: tuple[float, float], last: tuple[float, float]
+) -> bool:
+    """Whether the function of a law's switch has another sign within a step than at both ends."""
+    side = m.work.law_side[shaft]
+    if side * switch_value(m, shaft, t + h, last[0], last[1]) < 0.0:
+        return False
+    for i in range(1, 4):
+        share = 0.25 * i
+        angle, speed = first[0] + share * (last[0] - first[0]), first[1] + share * (last[1] - first[1])
+        if side * switch_value(m, shaft, t + share * h, angle, speed) < 0.0:
+            return True
+    return False
+
+
+@compiled_once(SOLVER)
+def misses_laws(m: Model, h: float) -> bool:
+    """Whether a step that is tried passes over a law's jump.
+
+    Of a law that says nothing of its jumps, the impulse that may be missed must be beyond the tolerance. Of one that
+    has a function with zeros there, two zeros within the step count; a single one is found as a root.
+    """
+    a, t = m.work.adams, m.work.adams.time
+    for shaft in range(2):
+        switches = m.work.torque_switch[shaft] != 0
+        if m.scene.torque[shaft].law_unknown == 0 and not switches:
+            continue
+        mass, state = (m.scene.pinion_inverse_mass, V) if shaft == DRIVE else (m.scene.gear_inverse_mass, W)
+        first = torque_angle(m, shaft, a.state[U], a.state[PHASE]), _speed(m, shaft, a.state)
+        last = torque_angle(m, shaft, a.new_state[U], a.new_state[PHASE]), _speed(m, shaft, a.new_state)
+        if switches:
+            if _returns(m, shaft, t, h, first, last):
+                return True
+            continue
+        missed = law_misfit(m, shaft, t, h, first, last) * mass * m.rows[m.scene.error_weights_at + state]
+        if missed > NOTED * SHARE:
+            note_law_jump(m)
+        if missed > SHARE:
+            return True
+    return False

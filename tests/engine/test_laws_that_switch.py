@@ -1,0 +1,150 @@
+"""Registered laws that jump, in time, angle and speed: their impulse and work arrive, in motion and at rest.
+
+Whatever the teeth do, ``n I1 w1 + I2 w2`` changes by ``n`` times the impulse of the drive, less that of the load.
+"""
+
+import math
+
+import numpy as np
+import pytest
+
+import gearidae as gd
+from gearidae.engine import solve
+from gearidae.errors import SceneError
+
+I1, I2, RATIO = 1.5263e-20, 6.1052e-20, 4.0
+TORQUE = 2e-16
+PERIOD, WIDTH, COUNT = 1.37e-3, 1e-4, 4
+
+
+def pulses(t, speed, p):
+    """Four pulses, each of a fourteenth of its period."""
+    k = math.floor(t / PERIOD)
+    return p[0] if 1 <= k <= COUNT and t - k * PERIOD < WIDTH else 0.0
+
+
+def pulse_ends(p, t_end):
+    return [t for k in range(1, COUNT + 1) for t in (k * PERIOD, k * PERIOD + WIDTH)]
+
+
+def sectors(t, angle, speed, p):
+    return p[0] if math.cos(p[1] * angle) > 0.3 else 0.0
+
+
+def sector_ends(t, angle, speed, p):
+    return math.cos(p[1] * angle) - 0.3
+
+
+def bang(t, speed, p):
+    return p[0] if speed < p[1] else -p[0]
+
+
+def wanted_speed(t, angle, speed, p):
+    return speed - p[1]
+
+
+LAWS = {
+    "pulses": (pulses, 1, {}),
+    "pulses_with_knots": (pulses, 1, {"knots": pulse_ends}),
+    "sectors": (sectors, 2, {}),
+    "sectors_with_switch": (sectors, 2, {"switch": sector_ends}),
+    "bang": (bang, 2, {}),
+    "bang_with_switch": (bang, 2, {"switch": wanted_speed}),
+}
+
+
+@pytest.fixture(autouse=True)
+def _registered():
+    for name, (function, count, declared) in LAWS.items():
+        gd.register_torque(name, parameters=count, **declared)(function)
+    yield
+    for name in LAWS:
+        gd.unregister_torque(name)
+
+
+def law(name, *parameters):
+    return {"name": name, "parameters": parameters}
+
+
+def schedule(torque):
+    """The same pulses by knots; their flanks take a picosecond."""
+    rows = [[0.0, 0.0]]
+    for begin, end in zip(pulse_ends((), 0.0)[::2], pulse_ends((), 0.0)[1::2], strict=True):
+        rows += [[begin, 0.0], [begin + 1e-12, torque], [end, torque], [end + 1e-12, 0.0]]
+    return rows
+
+
+MOTION = gd.preset("teodorescu2009_low_speed").replace(
+    {"load.drag": 0.0, "drive.torque": 0.0, "run.duration": 8e-3, "run.samples": 9}
+)
+
+
+@pytest.mark.parametrize("backend", ["native", "sksundae"])
+@pytest.mark.parametrize("name", ["pulses", "pulses_with_knots"])
+@pytest.mark.parametrize("shaft", ["drive", "load"])
+def test_pulses_arrive_in_motion(name, backend, shaft):
+    """Teeth ring in their adhesion all the time; the gear never comes to rest."""
+    torque = TORQUE if shaft == "drive" else 0.2 * TORQUE
+    run = solve(MOTION.replace({f"{shaft}.law": law(name, torque)}), backend=backend)
+    momentum = RATIO * I1 * run.samples["pinion_speed"] + I2 * run.samples["gear_speed"]
+    impulse = (RATIO if shaft == "drive" else -1.0) * torque * COUNT * WIDTH
+    assert momentum[-1] - momentum[0] == pytest.approx(impulse, rel=1e-4, abs=0)
+
+
+@pytest.mark.parametrize("name", ["pulses", "pulses_with_knots"])
+def test_pulses_push_gears_at_rest_as_a_schedule_does(name):
+    """A dry load holds the gears between the pulses."""
+    rest = MOTION.replace(
+        {"initial.gear_speed": 0.0, "load.torque": 6e-18, "coating.sam_fraction": 1.0, "initial.gap": 2e-8}
+    )
+    by_law = solve(rest.replace({"drive.law": law(name, 1e-16)}))
+    by_schedule = solve(rest.replace({"drive.schedule": schedule(1e-16)}))
+    assert by_schedule.samples["gear_angle"][-1] > 1e-6
+    np.testing.assert_allclose(
+        by_law.samples["gear_angle"], by_schedule.samples["gear_angle"], rtol=1e-3, atol=1e-9
+    )
+
+
+@pytest.mark.parametrize("name", ["sectors", "sectors_with_switch"])
+def test_sectors_of_the_angle_keep_their_work(flight, name):
+    """In flight the energy of the pinion grows by the torque times the angle within the sectors."""
+    order, torque = 400.0, 1e-17
+    run = solve(flight.replace({"drive.law": law(name, torque, order), "run.rtol": 1e-7}))
+    angle, speed = run.samples["pinion_angle"], run.samples["pinion_speed"]
+    half = math.acos(0.3)
+
+    def within(x):
+        """Angle within the sectors up to an angle."""
+        whole, rest = divmod(order * x, 2.0 * math.pi)
+        return (whole * 2.0 * half + min(rest, half) + max(0.0, rest - (2.0 * math.pi - half))) / order
+
+    work = np.array([torque * within(x - angle[0]) for x in angle])
+    assert order * (angle[-1] - angle[0]) > 10.0
+    np.testing.assert_allclose(0.5 * I1 * (speed**2 - speed[0] ** 2), work, rtol=0, atol=2e-4 * work[-1])
+
+
+@pytest.mark.parametrize("name", ["bang", "bang_with_switch"])
+def test_a_law_that_chatters_is_named(flight, name):
+    """A bang-bang controller of the speed without a hysteresis switches for ever once it has reached its speed."""
+    run = solve(flight.replace({"drive.law": law(name, 1e-17, 6.5), "run.rtol": 1e-6}))
+    assert run.status == "law_chatter"
+    assert run.time[-1] < 2e-3
+    assert "hysteresis" in run.message
+
+
+def test_the_largest_step_bounds_steps(flight):
+    free, bound = solve(flight), solve(flight.replace({"run.largest_step": 1e-5}))
+    assert bound.statistics.steps >= 800 > free.statistics.steps
+
+
+@pytest.mark.parametrize("declared", [{"knots": lambda p: ()}, {"switch": lambda t, p: 0.0}, {"knots": 3.0}])
+def test_declarations_of_other_arguments_are_refused(declared):
+    with pytest.raises(SceneError, match=next(iter(declared))):
+        gd.register_torque("another", **declared)
+
+
+def test_a_law_that_says_nothing_and_jumps_is_named_before_a_run(caplog):
+    with caplog.at_level("WARNING"):
+        gd.simulate(MOTION.replace({"drive.law": law("pulses", TORQUE), "run.duration": 1.5e-3}))
+    assert "pulses jumps at 0.00137 s" in caplog.text
+    assert "knots=" in caplog.text
