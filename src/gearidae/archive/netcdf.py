@@ -216,6 +216,10 @@ def _encoding(ds: xr.Dataset) -> dict[str, dict[str, Any]]:
     encoding: dict[str, dict[str, Any]] = {}
     for name, variable in ds.variables.items():
         entry = chunked(str(name), variable.dtype, variable.shape, variable.nbytes) | text_storage(variable)
+        if (
+            variable.dtype.kind in "OU" and variable.size
+        ):  # see `text_storage`: of several texts the same is true
+            entry["dtype"] = "S1"
         if variable.dtype.kind == "f" and name in ds.coords:
             entry["_FillValue"] = None  # coordinates have no gaps
         encoding[str(name)] = entry
