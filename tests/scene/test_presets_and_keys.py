@@ -26,7 +26,7 @@ CONTRACT = {
     "load": "torque harmonic drag viscous schedule harmonic.amplitude harmonic.frequency harmonic.order "
     "harmonic.phase law law.name law.parameters",
     "initial": "gear_speed gap mesh_phase",
-    "run": "asperity_events balance passages exposures duration samples rtol method stop checkpoints",
+    "run": "asperity_events balance passages exposures duration samples rtol method stop checkpoints largest_step",
     "roller": "radius mass width speed height",
     "contact": "model bodies roughness asperity seed radius_spread asperities friction friction_law shear_strength",
 }
