@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
+import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.text import Annotation
 
@@ -12,7 +15,7 @@ from gearidae.analysis.spectra import banded, crowded_from
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 0.1, "run.samples": 10_001})
 HIGH = gd.preset("teodorescu2009").replace({"run.duration": 3e-4, "run.samples": 6001})
-PICTURES = ("cycle", "power_spectrum", "impact_spectrum")
+PICTURES = ("cycle", "power_spectrum", "impact_spectrum", "orders")
 
 
 @pytest.fixture(scope="module")
@@ -176,3 +179,49 @@ def test_datasets_of_another_kind_are_refused(low, chart):
         gd.plot.power_spectrum(chart)
     with pytest.raises(gd.SceneError, match="no impact rings"):
         gd.plot.impact_spectrum(low.isel(time=slice(0, 300)))
+
+
+def _with_speed(speed, size=20_001, duration=2.0):
+    """Make a run of the slow gears with a given speed, without a simulation."""
+    time = np.linspace(0.0, duration, size)
+    values = speed(time)
+    angle = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(time) * (values[1:] + values[:-1]))])
+    data = {
+        "gear_speed": ("time", values, {"units": "rad s-1"}),
+        "gear_angle": ("time", angle, {"units": "rad"}),
+        **{name: ("event", np.zeros(0)) for name in ("event_time", "event_gap_rate")},
+        **{
+            name: ("event", np.zeros(0, dtype=np.int64))
+            for name in ("event_kind", "event_pair", "event_flank")
+        },
+    }
+    return xr.Dataset(data, {"time": time}, {"scene": json.dumps(LOW.to_dict())})
+
+
+def test_no_mesh_is_marked_at_the_mean_speed_of_a_run_up():
+    for speed, marked in ((lambda t: 4.0 * t, False), (lambda t: 4.0 + 0.1 * np.sin(900.0 * t), True)):
+        texts = [text.get_text() for text in gd.plot.power_spectrum(_with_speed(speed)).texts]
+        assert ("mesh" in texts) is marked
+
+
+def test_orders_mark_mesh_and_pinion_in_turns_of_the_gear():
+    ax = gd.plot.orders(_with_speed(lambda t: 1.0 + 4.0 * t))
+    marked = {text.get_text(): text.xy[0] for text in ax.texts if isinstance(text, Annotation)}
+    assert marked["mesh"] == LOW.gears.gear_teeth
+    assert marked["pinion"] == pytest.approx(LOW.gears.gear_teeth / LOW.gears.pinion_teeth)
+
+
+def test_a_spectrogram_of_a_run_up_has_the_mesh_at_the_speed_of_the_instant():
+    ax = gd.plot.spectrogram(_with_speed(lambda t: 4.0 * t), highest=150.0)
+    mesh = next(line for line in ax.get_lines() if line.get_label() == "mesh")
+    time, frequency = mesh.get_data()
+    # the mean of a straight line over a segment is its value at the middle; trapezoids are exact for it
+    assert frequency == pytest.approx(LOW.gears.gear_teeth * 4.0 * time / (2.0 * np.pi), rel=1e-6)
+
+
+def test_the_cycle_of_a_braked_run_is_its_last_pitch_while_it_ran():
+    braked = _with_speed(lambda t: np.maximum(4.0 - 4.0 * t, 0.0))  # stands from 1 s on
+    speed = gd.plot.cycle(braked).get_lines()[0].get_ydata()
+    # v^2 / (2 a) is the angle that is left: a pitch, and what lies below 1 % of the largest speed
+    assert speed[0] == pytest.approx(np.sqrt(2.0 * 4.0 * 2.0 * np.pi / LOW.gears.gear_teeth), rel=0.01)
+    assert speed[-1] == pytest.approx(0.04, abs=0.001)

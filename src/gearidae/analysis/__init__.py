@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from gearidae.analysis.impacts import impact_windows as impact_windows
     from gearidae.analysis.measured import read_signal as read_signal
     from gearidae.analysis.online import OnlineAssessment as OnlineAssessment
+    from gearidae.analysis.orders import order_spectrum as order_spectrum
+    from gearidae.analysis.orders import resample as resample
     from gearidae.analysis.ringing import characteristic_frequency as characteristic_frequency
     from gearidae.analysis.ringing import impact_frequencies as impact_frequencies
     from gearidae.analysis.ringing import impact_spectrum as impact_spectrum

@@ -124,8 +124,8 @@ def spectrogram(
     Returns
     -------
     DataArray, dims (..., frequency, time)
-        One-sided density [unit of the signal squared per Hz]; ``time`` [s] is the middle of each segment, the mean
-        of which is taken out. Attributes as for `power_spectrum`.
+        One-sided density [unit of the signal squared per Hz]; ``time`` [s] is the middle of each segment, from
+        which a straight line is taken out, so that a run-up itself does not show. Attributes as for `power_spectrum`.
 
     Raises
     ------
@@ -151,7 +151,7 @@ def spectrogram(
     for target, signal in zip(made, batch.signals, strict=True):
         if len(signal.values) >= size:
             density = scipy.signal.spectrogram(
-                signal.values, first.rate, window=taper, noverlap=shared, detrend="constant", mode="psd"
+                signal.values, first.rate, window=taper, noverlap=shared, detrend="linear", mode="psd"
             )[2]
             target[:, : density.shape[1]] = density
     middle = first.start + first.interval * (0.5 * size + (size - shared) * np.arange(columns))
@@ -164,7 +164,8 @@ def spectrogram(
             "time": xr.Variable("time", middle, {"units": "s", "long_name": "middle of the segment"}),
         },
         name=f"{batch.name}_spectrogram",
-        attrs=_attributes(batch, window, size, shared / size),
+        attrs=_attributes(batch, window, size, shared / size)
+        | {"scaling": "density, one-sided; a straight line is taken out of each segment"},
     )
 
 

@@ -25,6 +25,7 @@ from gearidae.plot.roller import roller_force as roller_force
 from gearidae.plot.roller import roller_gap as roller_gap
 from gearidae.plot.spectra import cycle as cycle
 from gearidae.plot.spectra import impact_spectrum as impact_spectrum
+from gearidae.plot.spectra import orders as orders
 from gearidae.plot.spectra import power_spectrum as power_spectrum
 from gearidae.plot.spectra import spectrogram as spectrogram
 from gearidae.plot.surface import surface as surface

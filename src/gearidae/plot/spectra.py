@@ -17,6 +17,7 @@ from gearidae.analysis.spectra import banded, crowded_from
 from gearidae.analysis.verdict import START_UP
 from gearidae.archive.pieces import pieces, reached
 from gearidae.archive.select import runs, scene_of
+from gearidae.arrays import Floats
 from gearidae.drawing.style import Run, legend, new_axes, runs_of, scale_for, thin, tidy
 from gearidae.errors import SceneError
 from gearidae.scene.prefixes import with_prefix
@@ -27,7 +28,15 @@ _SETTLED = 0.2
 """Part of a run left out of its spectrum, because it has not settled."""
 _MOST_DECADES = 14
 """As much of a spectrum that reaches to the ring, far below the mesh; rounding is another three decades down."""
+_ONE_SPEED = 0.1
+"""Range of the mean speeds of a record's quarters, over its mean, up to which its mesh has one frequency."""
+_FEWEST_BANDS = 32
+"""Of frequency, that a spectrogram shows."""
+_APART = 0.02
+"""Part of a spectrogram's height below which a line is not told from zero."""
 _PADDING = 8
+_STANDS = 0.01
+"""Speed over the largest of a record below which a gear stands: what is left of the ring after it has stuck."""
 _FLAT = ("tukey", 0.2)
 """Window in which the first impact, soon after the start-up, is not lost in the taper."""
 _MULTIPLES = 6.0
@@ -50,7 +59,8 @@ def cycle(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     Returns
     -------
     Axes
-        One period of the drive torque's first harmonic, or one pitch of the gear where there is none.
+        One period of the drive torque's first harmonic, or one pitch of the gear where there is none: of a gear that
+        stands in the end the last one that it turned.
 
     Raises
     ------
@@ -59,12 +69,21 @@ def cycle(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     """
     shown = runs_of(ds, "gear_speed")
     ax = new_axes(ax)
-    period, name = _period(ds, shown)
-    scale = scale_for(period, "s")
+    harmonics = scene_of(ds).get("drive", {}).get("harmonic", [])
+    driven = [float(harmonic["frequency"]) for harmonic in harmonics if "frequency" in harmonic][:1]
+    by_drive = bool(driven) and driven[0] * float(ds["time"][-1] - ds["time"][0]) > 1.0
+    name = "cycle of the drive" if by_drive else "pitch of the gear"
+    pitch = 2.0 * math.pi / int(scene_of(ds)["gears"]["gear_teeth"])
+    drawn = []
     for run in shown:
         end = reached(run.data["gear_speed"])
         speed = _between(run.data, end - _MOST_SAMPLES, end)["gear_speed"]
-        last = speed.sel(time=slice(float(speed["time"][-1]) - period, None))
+        if by_drive:
+            drawn.append(speed.sel(time=slice(float(speed["time"][-1]) - 1.0 / driven[0], None)))
+        else:
+            drawn.append(_last_pitch(speed, pitch))
+    scale = scale_for(max(float(last["time"][-1] - last["time"][0]) for last in drawn), "s")
+    for run, last in zip(shown, drawn, strict=True):
         at, values = thin(last["time"] - last["time"][0], last)
         ax.plot(
             at * scale.factor,
@@ -95,7 +114,8 @@ def power_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     Returns
     -------
     Axes
-        With the frequencies of the drive and of the mesh and its multiples marked, from the fastest run's mean speed.
+        With the frequencies of the drive and of the mesh and its multiples marked, from the mean speed of the fastest
+        run whose speed stays within a tenth; of run-ups and braked runs `orders` marks the mesh.
         If there is no drive frequency and the teeth ring far above the mesh after impacts, both axes are logarithmic,
         up to beyond the ringing, the frequencies of which are marked for a single run; the spectrum is averaged over
         bands of 1/24 octave there, and only the start-up is left out. The estimate is named in the picture.
@@ -109,7 +129,8 @@ def power_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     ax = new_axes(ax)
     harmonics = scene_of(ds).get("drive", {}).get("harmonic", [])
     drive = [float(harmonic["frequency"]) for harmonic in harmonics if "frequency" in harmonic]
-    mesh = max(_mesh_frequency(ds, _settled(run, _SETTLED)) for run in shown)
+    settled = [_settled(run, _SETTLED) for run in shown]
+    mesh = max((_mesh_frequency(ds, part) for part in settled if _has_one_speed(part)), default=0.0)
     found = [] if drive else [impacts for run in shown if (impacts := _impacts(run)) is not None]
     rings = sorted({float(ring) for impacts in found for ring in impacts["frequency"].values if ring > 0.0})
     lines = [line for line in (mesh, *drive) if line > 0.0]
@@ -144,6 +165,53 @@ def power_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     return ax
 
 
+def orders(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
+    """Draw the spectrum of the gear's speed over its turns: lines of a run-up stand still there.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A single run or a sweep of a gear pair; of a longer record the last half million samples.
+    ax : matplotlib Axes, optional
+        Where to draw; by default in a figure of its own.
+
+    Returns
+    -------
+    Axes
+        Up to four times the order of the mesh, which is marked with its multiples, and the pinion's turn.
+
+    Raises
+    ------
+    SceneError
+        If the dataset has no samples of speed and angle, or a gear does not turn.
+    """
+    shown = runs_of(ds, "gear_speed")
+    ax = new_axes(ax)
+    gears = scene_of(ds)["gears"]
+    mesh = int(gears["gear_teeth"])
+    for run in shown:
+        end = reached(run.data["gear_speed"])
+        part = run.data[["gear_speed", "gear_angle"]].isel(time=slice(max(end - _MOST_SAMPLES, 0), end))
+        density = analysis.order_spectrum(part).sel(order=slice(0.0, _MARKED_IF_WIDE * 1.1 * mesh))
+        ax.semilogy(
+            density["order"],
+            density,
+            color=run.colour,
+            linestyle=run.line,
+            linewidth=0.9,
+            label=run.label,
+        )
+    ax.set_xlim(0.0, _MARKED_IF_WIDE * 1.1 * mesh)
+    _fit_heights(ax, wide=False)
+    _mark(ax, mesh / int(gears["pinion_teeth"]), "pinion")
+    _mark_all(ax, [], float(mesh), [])
+    ax.set_xlabel("order (per turn of the gear)")
+    ax.set_ylabel("power spectral density\n((rad/s)²)")
+    tidy(ax)
+    legend(ax, shown)
+    return ax
+
+
 def spectrogram(ds: xr.Dataset, ax: Axes | None = None, *, highest: float | None = None) -> Axes:
     """Draw the power spectral density of the gear's speed over time.
 
@@ -154,11 +222,14 @@ def spectrogram(ds: xr.Dataset, ax: Axes | None = None, *, highest: float | None
     ax : matplotlib Axes, optional
         Where to draw; by default in a figure of its own.
     highest : float, optional
-        Highest frequency to be shown [Hz]; by default four times that of the impact response, or all.
+        Highest frequency to be shown [Hz]; by default four times that of the impact response, or of the mesh at the
+        highest speed, or all.
 
     Returns
     -------
     Axes
+        With the frequency of the mesh and those of the shafts, where they stand apart from zero, as lines at the speed
+        of each instant.
 
     Raises
     ------
@@ -167,15 +238,22 @@ def spectrogram(ds: xr.Dataset, ax: Axes | None = None, *, highest: float | None
     """
     run = _single(ds)
     density, found = analysis.spectrogram(run), analysis.impact_frequencies(run)
+    gears = scene_of(ds)["gears"]
+    half = 0.5 * float(density.attrs["segment_length"])
+    turns = _mean_speed(run, density["time"].values, half) / (2.0 * math.pi)
+    mesh = int(gears["gear_teeth"]) * turns
     if highest is None:
         rings = found["frequency"].values
-        ringing = rings[np.isfinite(rings)]
-        highest = 4.0 * float(ringing.max()) if ringing.size else math.inf
+        highest = 4.0 * max([*rings[np.isfinite(rings)], 0.0])
+        if (
+            not highest
+        ):  # of a ring that may be an alias nothing is known, and a slow mesh is below the first band
+            highest = max(4.0 * float(np.nanmax(mesh)), _FEWEST_BANDS * float(density["frequency"][1]))
     density = density.sel(frequency=slice(0.0, highest))
     ax = new_axes(ax, height=3.6)
     scale = scale_for(float(run["time"][-1]), "s")
     level = 10.0 * np.log10(np.maximum(density.values, np.nanmax(density.values) * 10.0**-_DECADES))
-    mesh = ax.pcolormesh(
+    colours = ax.pcolormesh(
         density["time"] * scale.factor,
         density["frequency"],
         level,
@@ -183,8 +261,16 @@ def spectrogram(ds: xr.Dataset, ax: Axes | None = None, *, highest: float | None
         cmap="viridis",
         rasterized=True,
     )
-    bar = ax.figure.colorbar(mesh, ax=ax, pad=0.02)
+    bar = ax.figure.colorbar(colours, ax=ax, pad=0.02)
     bar.set_label("dB re 1 (rad/s)²/Hz")
+    shown = float(density["frequency"][-1])
+    lines = {"mesh": mesh, "pinion": mesh / int(gears["pinion_teeth"]), "gear": turns}
+    for (name, line), style in zip(lines.items(), ("-", "--", ":"), strict=True):
+        if np.nanmax(line) > _APART * shown:
+            ax.plot(density["time"] * scale.factor, line, style, color="white", linewidth=0.8, label=name)
+    ax.set_ylim(0.0, shown)
+    if ax.get_lines():
+        ax.legend(loc="upper left", fontsize="small", labelcolor="white", facecolor="0.2")
     _note_aliases(ax, found)
     ax.yaxis.set_major_formatter(EngFormatter("Hz"))
     ax.set_xlabel(f"time ({scale.unit})")
@@ -349,20 +435,36 @@ def _length(run: xr.Dataset) -> float:
     return float(time[-1] - time[0]) * len(time) / (len(time) - 1)
 
 
+def _mean_speed(run: xr.Dataset, middle: Floats, half: float) -> Floats:
+    """Mean of the gear's speed, without its sign, half a segment to both sides of each time [rad/s]."""
+    time, speed = run["time"].values, run["gear_speed"].values
+    turned = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(time) * (speed[1:] + speed[:-1]))])
+    begin, end = np.maximum(middle - half, time[0]), np.minimum(middle + half, time[-1])
+    return np.asarray(np.abs(np.interp(end, time, turned) - np.interp(begin, time, turned)) / (end - begin))
+
+
 def _mesh_frequency(ds: xr.Dataset, run: xr.Dataset) -> float:
     teeth = int(scene_of(ds)["gears"]["gear_teeth"])
     return abs(float(run["gear_speed"].mean())) * teeth / (2.0 * math.pi)
 
 
-def _period(ds: xr.Dataset, shown: list[Run]) -> tuple[float, str]:
-    """Length of a cycle [s] and what it is a cycle of."""
-    listed: list[dict[str, Any]] = scene_of(ds).get("drive", {}).get("harmonic", [])
-    harmonics = [harmonic for harmonic in listed if "frequency" in harmonic]
-    duration = float(ds["time"][-1] - ds["time"][0])
-    if harmonics and float(harmonics[0]["frequency"]) * duration > 1.0:
-        return 1.0 / float(harmonics[0]["frequency"]), "cycle of the drive"
-    frequency = _mesh_frequency(ds, _settled(shown[0], _SETTLED))
-    return (min(1.0 / frequency, duration) if frequency > 0.0 else duration), "pitch of the gear"
+def _has_one_speed(run: xr.Dataset) -> bool:
+    """Tell whether the mean speeds of the quarters of a record lie within a tenth of that of the whole."""
+    speed = run["gear_speed"].values
+    means = [float(np.mean(part)) for part in np.array_split(speed, 4) if part.size]
+    return max(means) - min(means) <= _ONE_SPEED * abs(float(np.mean(speed)))
+
+
+def _last_pitch(speed: xr.DataArray, pitch: float) -> xr.DataArray:
+    """Pick the last pitch that a gear turned before it stood, or all if it turned less."""
+    values, time = np.abs(speed.values), speed["time"].values
+    moving = np.flatnonzero(values > _STANDS * values.max())
+    if not moving.size:
+        return speed
+    end = int(moving[-1])
+    turned = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(time) * (speed.values[1:] + speed.values[:-1]))])
+    before = np.flatnonzero(np.abs(turned[end] - turned[:end]) >= pitch)
+    return speed.isel(time=slice(int(before[-1]) if before.size else 0, end + 1))
 
 
 def _mark(ax: Axes, frequency: float, text: str) -> None:
