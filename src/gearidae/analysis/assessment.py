@@ -330,9 +330,8 @@ def _read(fit: Fit, model: MapModel, rings: RingSet, silent: Assessment, rate: f
         return replace(answer, verdict="ambiguous", explanation=why)
     fraction = float(fractions[fit.best])
     above, below = model.known[model.known > fraction], model.known[model.known < fraction]
-    if (
-        above.size and below.size and above[0] - below[-1] > _COARSE * (1.0 + 1e-9)
-    ):  # steps of 0.1 are rounded
+    coarsest = _COARSE * (1.0 + 1e-9)  # steps of 0.1 are rounded
+    if above.size and below.size and above[0] - below[-1] > coarsest:
         why = (
             f"impacts ring at {at} Hz, as between {below[-1]:.3g} and {above[0]:.3g}, where the map has no coverage: "
             f"one with steps of {_COARSE:g} or less can tell"

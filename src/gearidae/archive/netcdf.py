@@ -216,9 +216,8 @@ def _encoding(ds: xr.Dataset) -> dict[str, dict[str, Any]]:
     encoding: dict[str, dict[str, Any]] = {}
     for name, variable in ds.variables.items():
         entry = chunked(str(name), variable.dtype, variable.shape, variable.nbytes) | text_storage(variable)
-        if (
-            variable.dtype.kind in "OU" and variable.size
-        ):  # see `text_storage`: of several texts the same is true
+        # The reason of `text_storage` holds for several texts too; the library cannot store none as characters.
+        if variable.dtype.kind in "OU" and variable.size:
             entry["dtype"] = "S1"
         if variable.dtype.kind == "f" and name in ds.coords:
             entry["_FillValue"] = None  # coordinates have no gaps

@@ -133,16 +133,11 @@ class Meniscus(AsperityLaw):
     def nodes(self, low: ArrayLike, high: ArrayLike, x: Floats, w: Floats) -> tuple[Floats, Floats]:
         """Lay a rule out on either side of touching, above it in ``sqrt(displacement)``; see `AsperityLaw.nodes`."""
         ends = np.stack(np.broadcast_arrays(low, high)).astype(np.float64)[..., None]
-        parts = []
-        apart, close = np.minimum(ends, 0.0), np.sqrt(np.maximum(ends, 0.0))
+        apart = np.minimum(ends, 0.0)
         half = 0.5 * (apart[1] - apart[0])
-        parts.append((apart[0] + half * (x + 1.0), half * w))
-        half = 0.5 * (close[1] - close[0])
-        root = close[0] + half * (x + 1.0)
-        parts.append((root**2, 2.0 * root * half * w))
-        displacement = np.concatenate([part[0] for part in parts], axis=-1)
-        measure = np.concatenate([part[1] for part in parts], axis=-1)
-        return displacement, measure * self.load(displacement)
+        close, measure = _touching_nodes(ends, x, w)
+        displacement = np.concatenate([apart[0] + half * (x + 1.0), close], axis=-1)
+        return displacement, np.concatenate([half * w, measure], axis=-1) * self.load(displacement)
 
     def energy(self, displacement: ArrayLike) -> Floats:
         """Energy stored from breaking on: ``-F0 (d_m + delta)^2 / (2 d_m)`` before the tip touches."""
@@ -157,9 +152,14 @@ class Meniscus(AsperityLaw):
 
     def area_nodes(self, low: ArrayLike, high: ArrayLike, x: Floats, w: Floats) -> tuple[Floats, Floats]:
         """Lay a rule out where the tip touches; see `AsperityLaw.area_nodes`."""
-        close = np.sqrt(np.maximum(np.stack(np.broadcast_arrays(low, high)).astype(np.float64), 0.0))[
-            ..., None
-        ]
-        half = 0.5 * (close[1] - close[0])
-        root = close[0] + half * (x + 1.0)
-        return root**2, 2.0 * root * half * w * root**2
+        ends = np.stack(np.broadcast_arrays(low, high)).astype(np.float64)[..., None]
+        displacement, measure = _touching_nodes(ends, x, w)
+        return displacement, measure * self.area(displacement)
+
+
+def _touching_nodes(ends: Floats, x: Floats, w: Floats) -> tuple[Floats, Floats]:
+    """Nodes and weights of a rule between two displacements of tips that touch, in ``sqrt(displacement)``."""
+    close = np.sqrt(np.maximum(ends, 0.0))
+    half = 0.5 * (close[1] - close[0])
+    root = close[0] + half * (x + 1.0)
+    return root**2, 2.0 * root * half * w

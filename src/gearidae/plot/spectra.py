@@ -245,9 +245,8 @@ def spectrogram(ds: xr.Dataset, ax: Axes | None = None, *, highest: float | None
     if highest is None:
         rings = found["frequency"].values
         highest = 4.0 * max([*rings[np.isfinite(rings)], 0.0])
-        if (
-            not highest
-        ):  # of a ring that may be an alias nothing is known, and a slow mesh is below the first band
+        # Nothing is known of a ring that may be an alias, and a slow mesh is below the first band.
+        if not highest:
             highest = max(4.0 * float(np.nanmax(mesh)), _FEWEST_BANDS * float(density["frequency"][1]))
     density = density.sel(frequency=slice(0.0, highest))
     ax = new_axes(ax, height=3.6)

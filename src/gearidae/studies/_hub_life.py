@@ -146,7 +146,7 @@ def hub_life(
     """
     scene = require_gears(scene)
     base, execution = prepared(scene, options, samples="off")
-    whole("seeds", seeds, 1, 1_000_000)
+    seeds = whole("seeds", seeds, 1, 1_000_000)
     wear = _wear(base, coefficient, threshold, (spread, seeds), length)
     measured = Turns(whole("turns", turns, 1, 10_000), _TOLERANCE.take("tolerance", tolerance))
     clearance = switch("clearance", clearance)
@@ -210,7 +210,7 @@ def _wear(
     size = scene.gears.face_width if length is None else _LENGTH.take("length", length)
     limit: Threshold = read_threshold(threshold)
     k, spread = _COEFFICIENT.take("coefficient", coefficient), _SPREAD.take("spread", scatter[0])
-    count = whole("seeds", scatter[1], 1, 1_000_000) if spread > 1.0 else 1
+    count = scatter[1] if spread > 1.0 else 1
     radii = np.array([joint.radius for joint in there])
     volumes = limit.of(scene.surface, joint_area(radii, size))
     factors = drawn_factors(spread, count, len(there))
