@@ -6,6 +6,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parent))
 
 from generate import write_tables
+from linked import SHORT_NAMES, write_inventories
 
 import gearidae
 
@@ -18,8 +19,10 @@ extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
+    "sphinx.ext.intersphinx",
     "sphinx.ext.viewcode",
     "numpydoc",
+    "sphinx_copybutton",
     "mathml",
 ]
 html_math_renderer = "mathml"
@@ -29,7 +32,15 @@ exclude_patterns = ["_build", "**/generated/*.inc.md"]
 html_theme = "furo"
 html_title = f"gearidae {release}"
 autosummary_generate = True
-autodoc_typehints = "none"  # the docstrings name types and shapes
+autodoc_typehints = "signature"
+autodoc_typehints_format = "short"
+intersphinx_mapping = write_inventories(Path(__file__).parent / "reference" / "generated")
+numpydoc_xref_param_type = True
+numpydoc_xref_aliases = SHORT_NAMES
+numpydoc_xref_ignore = "all"  # but the aliases
+copybutton_prompt_text = "$ "
+copybutton_only_copy_prompt_lines = True  # of a block with prompts: what is printed stays
+copybutton_remove_prompts = True
 numpydoc_show_class_members = False
 numpydoc_class_members_toctree = False
 highlight_language = "none"

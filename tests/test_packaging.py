@@ -173,7 +173,19 @@ def test_source_distribution_has_what_tests_and_docs_need(built):
         "CHANGELOG.md",
         "CONTRIBUTING.md",
         "Makefile",
+        "hatch_build.py",
     } <= in_sdist
+
+
+def test_the_readme_on_a_package_index_has_no_link_into_the_tree(wheel):
+    with zipfile.ZipFile(wheel) as file:
+        (name,) = [name for name in file.namelist() if name.endswith(".dist-info/METADATA")]
+        shown = file.read(name).decode()
+    assert "Description-Content-Type: text/markdown" in shown
+    assert "share of the flanks that the monolayer" in shown
+    links = re.findall(r"\]\(([^)]+)\)", shown)
+    assert "https://docs.xarray.dev" in links
+    assert all(link.startswith("https://") for link in links)
 
 
 def test_every_supported_python_is_named():

@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike
 
 from gearidae.arrays import Floats
 from gearidae.asperities.tip import Asperity
+from gearidae.references import Reference
 
 _X, _W = np.polynomial.legendre.leggauss(48)
 
@@ -36,6 +37,9 @@ class AsperityLaw(ABC):
 
     needs: ClassVar[tuple[str, ...]] = ()
     """Keys of the table ``surface`` that this law needs, and without which they have no effect."""
+
+    references: ClassVar[tuple[Reference, ...]] = ()
+    """Publications of the law, which `gearidae.cite` names."""
 
     @classmethod
     @abstractmethod

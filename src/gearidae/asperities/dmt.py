@@ -19,6 +19,7 @@ from gearidae.arrays import Floats
 from gearidae.asperities.base import AsperityLaw
 from gearidae.asperities.registry import register
 from gearidae.asperities.tip import Asperity
+from gearidae.references import Reference
 
 
 @register
@@ -33,6 +34,18 @@ class Dmt(AsperityLaw):
     """
 
     name: ClassVar[str] = "dmt"
+    references: ClassVar[tuple[Reference, ...]] = (
+        Reference(
+            "derjaguin1975",
+            ("B. V. Derjaguin", "V. M. Muller", "Yu. P. Toporov"),
+            "Effect of contact deformations on the adhesion of particles",
+            1975,
+            "Journal of Colloid and Interface Science",
+            "53",
+            "314-326",
+            doi="10.1016/0021-9797(75)90018-1",
+        ),
+    )
     jkr_limit: float
 
     @classmethod

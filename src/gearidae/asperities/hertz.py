@@ -17,6 +17,7 @@ from gearidae.arrays import Floats
 from gearidae.asperities.base import AsperityLaw
 from gearidae.asperities.registry import register
 from gearidae.asperities.tip import Asperity
+from gearidae.references import JOHNSON_1985, Reference
 
 
 @register
@@ -25,6 +26,7 @@ class Hertz(AsperityLaw):
     """Elastic spheres that do not adhere: ``P = displacement^1.5`` in compression, nothing else."""
 
     name: ClassVar[str] = "hertz"
+    references: ClassVar[tuple[Reference, ...]] = (JOHNSON_1985,)
 
     @classmethod
     def of(cls, tip: Asperity, unit: float) -> Hertz:

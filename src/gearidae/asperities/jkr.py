@@ -35,6 +35,7 @@ from gearidae.asperities.base import AsperityLaw
 from gearidae.asperities.hertz import Hertz
 from gearidae.asperities.registry import register
 from gearidae.asperities.tip import Asperity
+from gearidae.references import Reference
 
 S_FOLD = (1.0 / 18.0) ** (1.0 / 6.0)
 """s at the fold, displacement -1: the end of the stable branch."""
@@ -168,6 +169,18 @@ class Jkr(AsperityLaw):
     """
 
     name: ClassVar[str] = "jkr"
+    references: ClassVar[tuple[Reference, ...]] = (
+        Reference(
+            "johnson1971",
+            ("K. L. Johnson", "K. Kendall", "A. D. Roberts"),
+            "Surface energy and the contact of elastic solids",
+            1971,
+            "Proceedings of the Royal Society A",
+            "324",
+            "301-313",
+            doi="10.1098/rspa.1971.0141",
+        ),
+    )
     limit: float
 
     @classmethod

@@ -47,6 +47,7 @@ from gearidae.asperities.base import AsperityLaw
 from gearidae.asperities.hertz import Hertz
 from gearidae.asperities.registry import register
 from gearidae.asperities.tip import Asperity
+from gearidae.references import Reference
 
 HALF_PI: Final = 0.5 * math.pi
 Z_TOUCH: Final = HALF_PI**-0.75
@@ -157,6 +158,28 @@ class Maugis(AsperityLaw):
     """
 
     name: ClassVar[str] = "maugis"
+    references: ClassVar[tuple[Reference, ...]] = (
+        Reference(
+            "maugis1992",
+            ("D. Maugis",),
+            "Adhesion of spheres: the JKR-DMT transition using a Dugdale model",
+            1992,
+            "Journal of Colloid and Interface Science",
+            "150",
+            "243-269",
+            doi="10.1016/0021-9797(92)90285-T",
+        ),
+        Reference(
+            "kim1998",
+            ("K.-S. Kim", "R. M. McMeeking", "K. L. Johnson"),
+            "Adhesion, slip, cohesive zones and energy fluxes for elastic spheres in contact",
+            1998,
+            "Journal of the Mechanics and Physics of Solids",
+            "46",
+            "243-266",
+            doi="10.1016/S0022-5096(97)00070-7",
+        ),
+    )
     length: float
     zone: float
 

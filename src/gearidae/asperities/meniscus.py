@@ -38,6 +38,7 @@ from gearidae.asperities.base import AsperityLaw
 from gearidae.asperities.dmt import Dmt
 from gearidae.asperities.registry import register
 from gearidae.asperities.tip import Asperity
+from gearidae.references import Reference
 
 TENSION: Final = 0.072
 """Surface tension of water [N/m]."""
@@ -90,6 +91,25 @@ class Meniscus(AsperityLaw):
     """
 
     name: ClassVar[str] = "meniscus"
+    references: ClassVar[tuple[Reference, ...]] = (
+        Reference(
+            "israelachvili2011",
+            ("J. N. Israelachvili",),
+            "Intermolecular and Surface Forces, 3rd edition",
+            2011,
+            publisher="Academic Press",
+        ),
+        Reference(
+            "orr1975",
+            ("F. M. Orr", "L. E. Scriven", "A. P. Rivas"),
+            "Pendular rings between solids: meniscus properties and capillary force",
+            1975,
+            "Journal of Fluid Mechanics",
+            "67",
+            "723-742",
+            doi="10.1017/S0022112075000572",
+        ),
+    )
     needs: ClassVar[tuple[str, ...]] = ("humidity",)
     pull: float
     reach: float

@@ -19,6 +19,7 @@ from gearidae.arrays import Floats
 from gearidae.asperities.base import AsperityLaw
 from gearidae.asperities.tip import Asperity, Surface, asperity_of, make_tip
 from gearidae.errors import SceneError
+from gearidae.references import Reference
 from gearidae.registry import Registry
 
 Law = TypeVar("Law", bound=type[AsperityLaw])
@@ -97,6 +98,22 @@ def law_needs(name: str) -> tuple[str, ...]:
         If there is no such law.
     """
     return _LAWS.find(name).needs
+
+
+def law_references(name: str) -> tuple[Reference, ...]:
+    """Return the publications of a law.
+
+    Parameters
+    ----------
+    name : str
+        The law's name.
+
+    Raises
+    ------
+    SceneError
+        If there is no such law.
+    """
+    return _LAWS.find(name).references
 
 
 def law_of_tip(name: str, tip: Asperity, unit: float) -> AsperityLaw:

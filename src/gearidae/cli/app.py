@@ -56,12 +56,15 @@ def run(
     resume: Annotated[bool, Parameter(help="Resume the unfinished run in the output file.")] = False,
     start: Annotated[Path | None, Parameter(help="Archive of another run to go on from.")] = None,
     until: Annotated[str | None, Parameter(help="End the run before its time: sticks, or 'turns N'.")] = None,
+    as_json: Json = False,
 ) -> int:
     """Run one scene and write a netCDF archive, which can be opened during the run."""
     from gearidae.cli.simulation import run_case
 
     changes = [*(settings or []), *([] if until is None else [f"run.stop={until}"])]
-    return run_case(str(case), output, changes, rtol, overwrite=overwrite, resume=resume, start=start)
+    return run_case(
+        str(case), output, changes, rtol, overwrite=overwrite, resume=resume, start=start, as_json=as_json
+    )
 
 
 @app.command
@@ -99,6 +102,7 @@ def sweep(
             consume_multiple=True,
         ),
     ] = None,
+    as_json: Json = False,
 ) -> int:
     """Run a scene for several values of one or more keys, into one archive.
 
@@ -118,6 +122,7 @@ def sweep(
         resume=resume,
         overwrite=overwrite,
         keep=keep,
+        as_json=as_json,
     )
 
 
@@ -272,11 +277,11 @@ def assess(
 
 
 @app.command
-def surfaces() -> int:
+def surfaces(*, as_json: Json = False) -> int:
     """List the surfaces that a case may name (surface = "polysilicon, OTS"), each number with its source."""
     from gearidae.cli.surface_table import show_library
 
-    show_library()
+    show_library(as_json=as_json)
     return 0
 
 
@@ -324,6 +329,7 @@ def surface(
         Path | None, Parameter(help="List of the summits to write, for contact.asperities = {file = ...}.")
     ] = None,
     overwrite: Overwrite = False,
+    as_json: Json = False,
 ) -> int:
     """Take roughness, density and tip radius of the asperities from a measured height map.
 
@@ -333,15 +339,15 @@ def surface(
 
     case = None if into is None else str(into)
     choices = Choices(size, unit, cutoff, by, both_flanks, align_rows, case, asperities)
-    return analyse_scan(scan, choices, output, picture, overwrite=overwrite)
+    return analyse_scan(scan, choices, output, picture, overwrite=overwrite, as_json=as_json)
 
 
 @app.command
-def check(case: Case, *, settings: Settings = None) -> int:
+def check(case: Case, *, settings: Settings = None, as_json: Json = False) -> int:
     """Check a case file; print estimates and limits of the model without running it."""
     from gearidae.cli.checking import check_case
 
-    return check_case(str(case), settings or [])
+    return check_case(str(case), settings or [], as_json=as_json)
 
 
 @app.command

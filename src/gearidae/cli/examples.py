@@ -33,7 +33,11 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     ),
     "surfaces": ("gearidae surfaces",),
     "compile": ("gearidae compile",),
-    "check": ("gearidae check mine.toml", "gearidae check mine.toml --set coating.sam_fraction=0.5"),
+    "check": (
+        "gearidae check mine.toml",
+        "gearidae check mine.toml --set coating.sam_fraction=0.5",
+        "gearidae check mine.toml --json",
+    ),
     "init": ("gearidae init mine", "gearidae init mine --preset start_up"),
     "schema": ("gearidae schema -o gearidae.schema.json",),
     "info": ("gearidae info mine.nc", "gearidae info mine.nc --json"),

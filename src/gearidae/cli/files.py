@@ -9,6 +9,7 @@ from pathlib import Path
 import xarray as xr
 
 import gearidae as gd
+from gearidae.archive.citing import cite
 from gearidae.archive.rows import DIMS
 from gearidae.archive.select import is_roller, scene_of, swept_dims
 from gearidae.archive.target import whole_file
@@ -96,6 +97,9 @@ def describe(archive: Path, *, as_json: bool = False) -> int:
         print_line(result.sentence)
     if kind == "runs" or ATTRIBUTE in ds.attrs:  # working the rows out loads the solver
         show_validity(validity_of(ds), about=contact_subject(roller=is_roller(ds), swept=swept_dims(ds)))
+    print_line("Rests on (as BibTeX: gearidae.cite):")
+    for line in cite(ds).splitlines():
+        print_line(f"  {line}")
     return DONE
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gearidae.analysis.verdict import outcomes
+from gearidae.archive.citing import cite
 from gearidae.archive.run_summary import summary_of
 from gearidae.archive.select import scene_of, swept_dims
 from gearidae.archive.totals import energy_balance
-from gearidae.cli.output import print_line
-from gearidae.studies.products import answer
+from gearidae.cli.output import print_answer
+from gearidae.runs.kept_validity import validity_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -29,7 +30,7 @@ _ATTRIBUTES = (
 
 def print_json(facts: Mapping[str, Any]) -> None:
     """Print facts as one JSON object; what is not a number or infinite becomes null, which JSON has instead."""
-    print_line(json.dumps(_plain(facts), indent=2, allow_nan=False))
+    print_answer(json.dumps(_plain(facts), indent=2, allow_nan=False))
 
 
 def archive_facts(archive: Path, ds: xr.Dataset) -> dict[str, Any]:
@@ -52,6 +53,8 @@ def archive_facts(archive: Path, ds: xr.Dataset) -> dict[str, Any]:
         "outcomes": [{**asdict(outcome), "words": outcome.words} for outcome in outcomes(ds)],
         "run_summary": summary and summary.as_plain(),
         "energy_balance": energy_balance(ds),
+        "limits": [asdict(row) for row in validity_of(ds)],
+        "references": cite(ds).splitlines(),
         "scene": scene_of(ds),
     }
 
@@ -68,31 +71,34 @@ def product_facts(path: Path, ds: xr.Dataset, kind: str) -> dict[str, Any]:
     kind : str
         From `gearidae.studies.products.open_product`.
     """
+    from gearidae.studies.declared import studies  # which a run does without
+    from gearidae.studies.products import answer
+
     result = answer(ds, kind)
     return {
         "file": str(path),
         "bytes": path.stat().st_size,
         "kind": kind,
         "attributes": {str(name): value for name, value in ds.attrs.items() if name != "scene"},
-        **_contents(ds),
+        **_contents(ds, studies()[kind].columns),
         "answer": result.sentence,
         "rows": [list(row) for row in result.rows],
+        "references": cite(ds).splitlines(),
         "scene": scene_of(ds),
     }
 
 
-def _contents(ds: xr.Dataset) -> dict[str, Any]:
-    """Sizes and variables of a dataset."""
-    return {
-        "sizes": {str(name): size for name, size in ds.sizes.items()},
-        "variables": {
-            str(name): {
-                "dimensions": list(map(str, variable.dims)),
-                "units": str(variable.attrs.get("units", "")),
-            }
-            for name, variable in ds.data_vars.items()
-        },
-    }
+def _contents(ds: xr.Dataset, whole: Collection[str] = ()) -> dict[str, Any]:
+    """Sizes and variables of a dataset; those named `whole`, what a study has found, with their values."""
+    described = {}
+    for name in (*ds.coords, *ds.data_vars) if whole else ds.data_vars:
+        variable = ds[name]
+        described[str(name)] = {
+            "dimensions": list(map(str, variable.dims)),
+            "units": str(variable.attrs.get("units", "")),
+            **({"values": variable.values} if name in whole else {}),
+        }
+    return {"sizes": {str(name): size for name, size in ds.sizes.items()}, "variables": described}
 
 
 def _plain(value: Any) -> Any:

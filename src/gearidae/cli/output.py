@@ -57,11 +57,19 @@ def is_quiet() -> bool:
 
 def print_line(text: str) -> None:
     """Print a line of results, without wrapping."""
+    if not is_quiet():
+        _write(f"{printable(text)}\n")
+
+
+def print_answer(text: str) -> None:
+    """Print the whole answer of a command, also where no other results are to be shown."""
     _write(f"{printable(text)}\n")
 
 
 def show(table: RenderableType) -> None:
     """Print a table."""
+    if is_quiet():
+        return
     console = Terminal(
         width=None if sys.stdout.isatty() else _WIDTH_OF_FILES, highlight=False, markup=False, emoji=False
     )
@@ -92,8 +100,6 @@ def print_error(message: str) -> None:
 
 def _write(text: str) -> None:
     """Print to standard output; a reader that has closed it wants no more."""
-    if is_quiet():
-        return
     try:
         sys.stdout.write(text)
         sys.stdout.flush()

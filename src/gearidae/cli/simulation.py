@@ -12,6 +12,7 @@ from gearidae.archive import check_target
 from gearidae.archive.select import run_value, runs
 from gearidae.cli.case import check_dask, default_output, read_scene
 from gearidae.cli.codes import DONE, UNFINISHED
+from gearidae.cli.machine import archive_facts, print_json
 from gearidae.cli.output import is_quiet, print_error, print_line
 from gearidae.cli.tables import label_text, show_outcomes, show_summary
 from gearidae.errors import SceneError, SolverError
@@ -33,6 +34,7 @@ def run_case(
     overwrite: bool,
     resume: bool,
     start: Path | None = None,
+    as_json: bool = False,
 ) -> int:
     """Run one scene, write its archive, print its outcome.
 
@@ -52,6 +54,8 @@ def run_case(
         Whether to resume the run in the archive.
     start : Path, optional
         Archive of another run to go on from.
+    as_json : bool, optional
+        Whether to print one JSON object in place of tables.
 
     Returns
     -------
@@ -73,12 +77,17 @@ def run_case(
             start=start,
         )
     except SolverError as error:
-        if error.dataset is not None:
+        if error.dataset is not None and as_json:
+            print_json(archive_facts(target, error.dataset))
+        elif error.dataset is not None:
             show_outcomes(error.dataset)
             show_summary(error.dataset)
             print_line(f"Archive of the run up to the failure: {target}")
         print_error(str(error))
         return UNFINISHED
+    if as_json:
+        print_json(archive_facts(target, ds))
+        return DONE
     show_outcomes(ds)
     show_summary(ds)
     if was_finished:
@@ -100,6 +109,7 @@ def sweep_case(
     resume: bool,
     overwrite: bool,
     keep: Sequence[str] | None = None,
+    as_json: bool = False,
 ) -> int:
     """Run a sweep, write its archive, print the outcome of each run.
 
@@ -119,6 +129,8 @@ def sweep_case(
         Whether to resume an interrupted sweep.
     keep : sequence of str or None
         What each run leaves behind; None for everything.
+    as_json : bool, optional
+        Whether to print one JSON object in place of tables.
 
     Returns
     -------
@@ -131,7 +143,7 @@ def sweep_case(
     check_dask(dask, jobs)
     workers = check_jobs(jobs)
     scene = read_scene(case, settings)
-    words = grid_words(scene, values, workers if dask is None else None, zipped=zipped)
+    words = "" if as_json else grid_words(scene, values, workers if dask is None else None, zipped=zipped)
     announce("Sweep", scene, words, target, resume=resume, overwrite=overwrite)
     with dask_executor(dask) as executor:
         ds = gd.sweep(
@@ -147,13 +159,17 @@ def sweep_case(
             resume=resume,
             keep=keep,
         )
-    show_outcomes(ds)
-    print_line(f"Archive: {target}")
+    if as_json:
+        print_json({**archive_facts(target, ds), "headline": headline(ds)})
+    else:
+        show_outcomes(ds)
+        print_line(f"Archive: {target}")
     unfinished = () if (ds["status"] == "finished").all() else runs(ds)
     failed = [(label, run) for label, run in unfinished if run_value(run, "status") != "finished"]
     for label, run in failed:
         print_error(f"{label_text(ds, label)}: {run_value(run, 'message') or run_value(run, 'status')}")
-    print_line(headline(ds))
+    if not as_json:
+        print_line(headline(ds))
     return UNFINISHED if failed else DONE
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import gearidae as gd
 from gearidae.cli.case import check_dask, default_output, read_scene
 from gearidae.cli.codes import DONE, UNFINISHED
+from gearidae.cli.machine import print_json, product_facts
 from gearidae.cli.output import is_quiet, print_error, print_line, show_rows
 from gearidae.cli.simulation import announce
 from gearidae.cli.tables import name_failures
@@ -42,7 +43,7 @@ def run_study(study: Study, case: str, request: Request, call: Call) -> int:
     workers = check_jobs(request.jobs)
     scene = read_scene(case, request.settings or ())
     function = getattr(gd.studies, study.run or study.kind)
-    words = call.announcement
+    words = "" if request.as_json else call.announcement
     if not isinstance(words, str):
         words = words(scene, workers if request.dask is None else None)
     announce(study.title, scene, words, target, resume=request.resume, overwrite=request.overwrite)
@@ -58,6 +59,9 @@ def run_study(study: Study, case: str, request: Request, call: Call) -> int:
             overwrite=request.overwrite,
             resume=request.resume,
         )
+    if request.as_json:
+        print_json(product_facts(target, ds, kind_of(ds)))
+        return _code(ds)
     result = answer(ds, kind_of(ds))
     show_rows(result.rows)
     print_line(f"{study.title}: {target}")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final, get_args
 from cyclopts import App, Parameter
 
 from gearidae.cli import completing
-from gearidae.cli.app import Case, Dask, Output, Overwrite, Settings
+from gearidae.cli.app import Case, Dask, Json, Output, Overwrite, Settings
 from gearidae.cli.examples import epilogue
 from gearidae.studies.declared import study_of_command
 from gearidae.studies.study import Option, Study
@@ -34,6 +34,7 @@ class Request:
     dask: Dask = None
     resume: Annotated[bool, Parameter(help="Resume the unfinished study in the output file.")] = False
     overwrite: Overwrite = False
+    as_json: Json = False
 
     def executor(
         self, keys: Mapping[str, Any] | Sequence[str] = (), members: int = 0

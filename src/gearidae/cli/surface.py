@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import gearidae as gd
 from gearidae.archive.target import check_target, whole_file
 from gearidae.cli.case import read_scene
 from gearidae.cli.codes import DONE
-from gearidae.cli.output import print_line
+from gearidae.cli.machine import print_json
+from gearidae.cli.output import is_quiet, print_line, quieted
 from gearidae.cli.surface_table import show_surface
 from gearidae.errors import SceneError
 from gearidae.scene.prefixes import with_prefix
@@ -52,7 +54,13 @@ class Choices:
 
 
 def analyse_scan(
-    scan: Path, choices: Choices, output: Path | None, picture: Path | None, *, overwrite: bool
+    scan: Path,
+    choices: Choices,
+    output: Path | None,
+    picture: Path | None,
+    *,
+    overwrite: bool,
+    as_json: bool = False,
 ) -> int:
     """Print what a scan says about the asperities; write it as a part of a case file and as a picture.
 
@@ -66,6 +74,8 @@ def analyse_scan(
         Image to write.
     overwrite : bool
         Whether files may be replaced.
+    as_json : bool, optional
+        Whether to print one JSON object in place of the table and the remarks.
 
     Returns
     -------
@@ -77,6 +87,29 @@ def analyse_scan(
     SceneError
         If the scan cannot be read or analysed, a file may not be written, or its cut-off has not been chosen.
     """
+    with quieted(as_json or is_quiet()):
+        surface = _analyse(scan, choices, output, picture, overwrite=overwrite)
+    if as_json:
+        print_json(_facts(surface))
+    return DONE
+
+
+def _facts(surface: gd.surfaces.MeasuredSurface) -> dict[str, Any]:
+    """Say what the table says: a row for each cut-off and method, the remarks, and what a case takes."""
+    chosen = surface.cutoff is not None
+    return {
+        "rows": surface.statistics.to_dataframe().reset_index().to_dict("records"),
+        "remarks": surface.remarks,
+        "cutoff": surface.cutoff,
+        "settings": surface.settings if chosen else None,
+        "planes": surface.planes if chosen else None,
+    }
+
+
+def _analyse(
+    scan: Path, choices: Choices, output: Path | None, picture: Path | None, *, overwrite: bool
+) -> gd.surfaces.MeasuredSurface:
+    """Analyse a scan, print the table, and write the products."""
     if output is not None and choices.cutoff is None:
         raise SceneError("--cutoff", "(none)", "choose one before writing a case: the numbers depend on it")
     if choices.case is not None and output is None:
@@ -114,7 +147,7 @@ def analyse_scan(
         print_line(f"{'Surface' if choices.case is None else 'Case'}: {output}")
     elif choices.cutoff is None:
         print_line("The numbers depend on the cut-off wavelength: choose one with --cutoff.")
-    return DONE
+    return surface
 
 
 def _along(case: str | None) -> str:

@@ -8,6 +8,7 @@ import numpy as np
 from rich import box
 from rich.table import Table
 
+from gearidae.cli.machine import print_json
 from gearidae.cli.output import print_line, show
 from gearidae.scene.prefixes import with_prefix
 
@@ -30,10 +31,13 @@ _HEADINGS = (
 )
 
 
-def show_library() -> None:
-    """Print the library of named surfaces: a row a number, with its source."""
+def show_library(*, as_json: bool = False) -> None:
+    """Print the library of named surfaces: a row a number, with its source; or as one JSON object."""
     from gearidae.surfaces import library
 
+    if as_json:
+        print_json({"surfaces": library().reset_index().to_dict("records")})
+        return
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
     for heading in ("name", "key", "value", "source"):
         table.add_column(heading, no_wrap=heading != "source")

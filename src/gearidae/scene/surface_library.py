@@ -157,6 +157,20 @@ def library_changes(name: str) -> dict[str, Any]:
     return changes | {f"coating.{key}": value for key, value in tables.get("coating", {}).items()}
 
 
+def named_values(scene: Any) -> list[LibraryValue]:
+    """Return the numbers of a scene that are those of the library, of a surface that was named there."""
+    _, _, name = scene.surface.provenance.partition("library: ")
+    solid, _, coating = name.partition(", ")
+    if solid not in SOLIDS:
+        return []
+    found = []
+    for key, entry in {**SOLIDS[solid], **COATINGS.get(coating, {})}.items():
+        table, _, last = key.rpartition(".")
+        if table and getattr(getattr(scene, table), last) == entry.value:
+            found.append(entry)
+    return found
+
+
 def _known(part: str, among: Mapping[str, Any], name: str) -> str:
     """Return a part of a surface's name as the library writes it; capital letters do not count."""
     for known in among:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from gearidae.arrays import Floats
+from gearidae.references import FOUVRY_2003, Reference
 from gearidae.wear.base import Exposure, LossLaw, parameter
 from gearidae.wear.registry import register_loss
 
@@ -17,9 +18,10 @@ class AdhesionWork(LossLaw):
 
     name: ClassVar[str] = "adhesion_work"
     source: ClassVar[str] = (
-        "energy description of wear, S. Fouvry, T. Liskiewicz, Ph. Kapsa, S. Hannel and E. Sauger, Wear 255 (2003) "
-        "287-298, doi:10.1016/S0043-1648(03)00117-0; that of monolayers is not known: give it, or fit it to a life"
+        f"energy description of wear, {FOUVRY_2003.source}; "
+        "that of monolayers is not known: give it, or fit it to a life"
     )
+    references: ClassVar[tuple[Reference, ...]] = (FOUVRY_2003,)
 
     energy: float = parameter("J/m^2", "adhesion work per area that leaves 1/e of the coating, Q", above=0.0)
 

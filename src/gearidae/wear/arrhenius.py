@@ -9,6 +9,7 @@ import numpy as np
 
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
+from gearidae.references import Reference
 from gearidae.wear.base import Exposure, LossLaw, parameter
 
 if TYPE_CHECKING:
@@ -16,6 +17,26 @@ if TYPE_CHECKING:
 
 BOLTZMANN = 1.380649e-23
 """J/K, exact (SI)."""
+
+_ZHURKOV = Reference(
+    "zhurkov1965",
+    ("S. N. Zhurkov",),
+    "Kinetic concept of the strength of solids",
+    1965,
+    "International Journal of Fracture Mechanics",
+    "1",
+    "311-323",
+)
+_GOTSMANN = Reference(
+    "gotsmann2008",
+    ("B. Gotsmann", "M. A. Lantz"),
+    "Atomistic wear in a single asperity sliding contact",
+    2008,
+    "Physical Review Letters",
+    "101",
+    "125501",
+    doi="10.1103/PhysRevLett.101.125501",
+)
 
 
 @dataclass(frozen=True)
@@ -27,9 +48,9 @@ class Arrhenius(LossLaw):
     """
 
     name: ClassVar[str] = "arrhenius"
+    references: ClassVar[tuple[Reference, ...]] = (_ZHURKOV, _GOTSMANN)
     source: ClassVar[str] = (
-        "S. N. Zhurkov, Int. J. Fract. Mech. 1 (1965) 311-323; B. Gotsmann and M. A. Lantz, Phys. Rev. Lett. 101 "
-        "(2008) 125501, doi:10.1103/PhysRevLett.101.125501, who found 0.98 eV and 5.5e-29 m^3 for a tip on a polymer"
+        f"{_ZHURKOV.source}; {_GOTSMANN.source}, who found 0.98 eV and 5.5e-29 m^3 for a tip on a polymer"
     )
 
     law: LossLaw

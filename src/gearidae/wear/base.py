@@ -10,6 +10,7 @@ import numpy as np
 
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
+from gearidae.references import Reference
 from gearidae.scene.quantity import Quantity
 
 if TYPE_CHECKING:
@@ -59,6 +60,8 @@ class LossLaw(ABC):
         Name of the law.
     source : str
         Its source, and the knowledge of its parameters.
+    references : tuple of Reference
+        Publications of the law, which `gearidae.cite` names.
 
     Raises
     ------
@@ -68,6 +71,7 @@ class LossLaw(ABC):
 
     name: ClassVar[str]
     source: ClassVar[str]
+    references: ClassVar[tuple[Reference, ...]] = ()
 
     def __post_init__(self) -> None:
         """Read the parameters."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
+from gearidae.references import FOUVRY_2003, Reference
 from gearidae.scene.friction import friction_values
 from gearidae.wear.base import Exposure, parameter
 from gearidae.wear.registry import register_loss
@@ -23,9 +24,9 @@ class FrictionWork(SlidingWork):
 
     name: ClassVar[str] = "friction_work"
     source: ClassVar[str] = (
-        "energy description of wear, S. Fouvry, T. Liskiewicz, Ph. Kapsa, S. Hannel and E. Sauger, Wear 255 (2003) "
-        "287-298, doi:10.1016/S0043-1648(03)00117-0; the coefficient of monolayers has to be measured"
+        f"energy description of wear, {FOUVRY_2003.source}; the coefficient of monolayers has to be measured"
     )
+    references: ClassVar[tuple[Reference, ...]] = (FOUVRY_2003,)
 
     coefficient: float = parameter("m^2/J", "coverage lost for each unit of work of friction per area, k")
 

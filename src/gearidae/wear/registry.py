@@ -6,6 +6,7 @@ from dataclasses import fields
 from typing import Any, Final, TypeVar
 
 from gearidae.errors import SceneError
+from gearidae.references import Reference
 from gearidae.registry import Registry
 from gearidae.wear.base import LossLaw
 
@@ -51,6 +52,11 @@ def loss_law_units(name: str) -> dict[str, str]:
         If there is no such law.
     """
     return _LAWS.find(name).parameter_units()
+
+
+def loss_law_references(name: str) -> tuple[Reference, ...]:
+    """Return the publications of a loss law; none of a law that is not registered in this process."""
+    return _LAWS.find(name).references if name in _LAWS.names() else ()
 
 
 def loss_law(name: str, **parameters: Any) -> LossLaw:

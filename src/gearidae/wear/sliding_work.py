@@ -8,6 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from gearidae.arrays import Floats
+from gearidae.references import ARCHARD_1953, Reference
 from gearidae.wear.base import Exposure, LossLaw, parameter
 from gearidae.wear.registry import register_loss
 
@@ -22,9 +23,8 @@ class SlidingWork(LossLaw):
     """
 
     name: ClassVar[str] = "sliding_work"
-    source: ClassVar[str] = (
-        "J. F. Archard, J. Appl. Phys. 24 (1953) 981-988, doi:10.1063/1.1721448; K/H of monolayers has to be measured"
-    )
+    source: ClassVar[str] = f"{ARCHARD_1953.source}; K/H of monolayers has to be measured"
+    references: ClassVar[tuple[Reference, ...]] = (ARCHARD_1953,)
 
     coefficient: float = parameter("m^2/J", "coverage lost for each unit of sliding work per area, k")
 
