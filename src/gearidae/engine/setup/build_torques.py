@@ -67,16 +67,15 @@ def add_torques(s: Record, tables: Tables, scene: GearScene, begin: float) -> No
     tau, force = float(s.time_unit), float(s.force_unit)
     shafts = ((DRIVE, scene.drive, float(s.pinion_radius)), (LOAD, scene.load, float(s.gear_radius)))
     knots: set[float] = set()
+    waves: list[Floats] = []
     fastest = 0.0
     for shaft, law, radius in shafts:
         torque, unit = s.torque[shaft], force * radius
         harmonics = [(h.amplitude, h.frequency, h.phase) for h in law.harmonic if h.frequency is not None]
+        waves.append(np.array(pack_harmonics(harmonics, tau, unit)))
         orders = [(h.amplitude / unit, h.order, h.phase) for h in law.harmonic if h.order is not None]
         torque.constant = law.torque / unit
-        torque.harmonic_count, torque.harmonics_at = (
-            len(harmonics),
-            tables.add(pack_harmonics(harmonics, tau, unit)),
-        )
+        torque.harmonic_count, torque.harmonics_at = len(harmonics), tables.add(waves[-1])
         torque.law_torque, torque.law_speed = unit, float(s.length_unit) / tau / radius
         torque.order_count, torque.orders_at = len(orders), tables.add([x for term in orders for x in term])
         torque.angle_unit = float(s.length_unit) / radius
@@ -107,7 +106,7 @@ def add_torques(s: Record, tables: Tables, scene: GearScene, begin: float) -> No
             omega = fastest_schedule(s.schedule[which], tables.whole(), 0.0)
             fastest = max(fastest, omega / (2.0 * math.pi * tau))
     set_run(s, tables, scene, knots, begin)
-    _set_looks(s, tables.whole(), scene)
+    _set_looks(s, waves, scene)
     # a torque that knows the motion vibrates with it, and is looked at in each step
     laws = scene.drive.law is not None or scene.load.law is not None
     knows_motion = laws or s.speed_gain != 0.0 or s.torque["takes_angle"].any()
@@ -115,11 +114,10 @@ def add_torques(s: Record, tables: Tables, scene: GearScene, begin: float) -> No
     s.quadrature_time = 1.0 / (1.0 / QUADRATURE_TIME + 4.0 * math.pi * fastest * tau)
 
 
-def _set_looks(s: Record, tables: Floats, scene: GearScene) -> None:
-    """Set how often the torques of what is held are looked at, and what is known of their harmonics."""
+def _set_looks(s: Record, waves: list[Floats], scene: GearScene) -> None:
+    """Set how often the torques of what is held are looked at, and what is known of their packed harmonics."""
     fastest = 0.0
-    for torque in s.torque:
-        harmonics = tables[torque.harmonics_at : torque.harmonics_at + 3 * torque.harmonic_count]
+    for harmonics in waves:
         amplitudes, frequencies = abs(harmonics[0::3]), abs(harmonics[1::3])
         fastest = max(fastest, float(frequencies.max(initial=0.0)))
         s.rest_bend += float((amplitudes * frequencies**2).sum())
