@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from gearidae.errors import SceneError as SceneError
     from gearidae.errors import SolverError as SolverError
     from gearidae.populations import population as population
+    from gearidae.report import explore as explore
     from gearidae.report import write_report as write_report
     from gearidae.runs.compile_ahead import compile as compile  # noqa: A004
     from gearidae.runs.simulation import simulate as simulate

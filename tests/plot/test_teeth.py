@@ -14,17 +14,18 @@ import gearidae as gd
 from gearidae.cli import main
 from gearidae.plot.asperities import half_width, joined_asperities, rough_sample
 from gearidae.plot.teeth_view import TeethView
-from gearidae.plot.tooth_shape import contact_points, mesh_picture
+from gearidae.plot.tooth_shape import contact_points, tooth_outline
 from gearidae.records import Flank
 from gearidae.studies._tooth_contacts import tooth_contacts
 
 SCENE = gd.preset("teodorescu2009_low_speed").replace({"coating.sam_fraction": 0.5})
-PICTURE = mesh_picture(SCENE)
+PICTURE = tooth_outline(SCENE)
 GEOMETRY = PICTURE.geometry
 PINION, GEAR = PICTURE.pinion, PICTURE.gear
-FEW = mesh_picture(
+FEW = tooth_outline(
     SCENE.replace({"gears.pinion_teeth": 25, "gears.gear_teeth": 31, "mesh.tip_relief_radius": "1 mm"})
 )
+WIDE = tooth_outline(SCENE, gaps=7.0)
 
 
 @pytest.fixture(scope="module")
@@ -60,10 +61,10 @@ def beside_flank(wheel, point, turned, tooth, alpha, sign):
     return wheel.base_radius * ((off + math.pi) % (2 * math.pi) - math.pi)
 
 
-@pytest.mark.parametrize("picture", [PICTURE, FEW], ids=["preset", "others"])
+@pytest.mark.parametrize("picture", [PICTURE, FEW, WIDE], ids=["preset", "others", "wide gaps"])
 @pytest.mark.parametrize("u", [-6e-8, 3e-8, 9e-8])
 def test_contact_points_lie_on_the_line_of_action_and_on_both_flanks(picture, u):
-    geometry, b = picture.geometry, picture.half_backlash
+    geometry, gap = picture.geometry, 0.5 * SCENE.mesh.backlash - u
     alpha, pitch = geometry.pressure_angle, geometry.base_pitch
     for travel in np.linspace(0.0, 3.0, 7) * pitch:
         pinion_turned, gear_turned = picture.turned(travel, u)
@@ -71,10 +72,10 @@ def test_contact_points_lie_on_the_line_of_action_and_on_both_flanks(picture, u)
             place = travel - pair * pitch
             if not 0.0 <= place <= geometry.path_length:
                 continue
-            on_pinion, on_gear = contact_points(picture, Flank.DRIVE, place, b - u)
+            on_pinion, on_gear = contact_points(picture, Flank.DRIVE, place, gap)
             # on the line through the pitch point, inclined by the pressure angle; lengths of 1e-5 m, rounded
             assert on_gear[1] == pytest.approx(-math.tan(alpha) * on_gear[0], rel=1e-12, abs=1e-19)
-            assert math.dist(on_pinion, on_gear) == pytest.approx(b - u, rel=1e-9, abs=0.0)
+            assert math.dist(on_pinion, on_gear) == pytest.approx(picture.gaps * gap, rel=1e-9, abs=0.0)
             # angles of a radian, rounded, times the radius
             assert abs(beside_flank(picture.pinion, on_pinion, pinion_turned, pair, alpha, 1)) < 1e-18
             assert abs(beside_flank(picture.gear, on_gear, gear_turned, pair, alpha, 1)) < 1e-18
@@ -94,6 +95,22 @@ def test_outlines_of_teeth_are_involutes(wheel):
         assert abs(beside_flank(wheel, centred[k], 0.0, 0, alpha, 1)) < 1e-18
 
 
+def test_whole_wheels_have_all_their_teeth():
+    for wheel in (PINION, GEAR, FEW.pinion, FEW.gear):
+        outline = wheel.outline()
+        assert len(outline) == wheel.teeth * len(wheel.tooth)
+        angles = np.unwrap(np.arctan2(outline[:, 1] - wheel.centre, outline[:, 0]))
+        assert angles[-1] - angles[0] == pytest.approx(-2 * math.pi, abs=2 * math.pi / wheel.teeth)
+
+
+@pytest.mark.parametrize("gaps", [0.0, -1.0, math.nan, 30.0])
+def test_gaps_that_leave_no_teeth_are_refused(gaps):
+    with pytest.raises(gd.SceneError, match="gaps"):
+        tooth_outline(SCENE, gaps=gaps)
+    with pytest.raises(gd.SceneError, match="gears"):
+        tooth_outline(gd.preset("roller_slow"))
+
+
 def thickness(wheel):
     """Thickness of a tooth at the pitch circle [m]."""
     angles, radii = np.arctan2(*wheel.tooth.T), np.hypot(*wheel.tooth.T)
@@ -106,17 +123,18 @@ def thickness(wheel):
     return abs(last - first)
 
 
-def test_teeth_and_backlash_fill_the_pitch():
+@pytest.mark.parametrize("picture", [PICTURE, WIDE], ids=["to scale", "wide gaps"])
+def test_teeth_and_backlash_fill_the_pitch(picture):
     pitch = math.pi * GEOMETRY.module
-    across = thickness(PINION) + thickness(GEAR)
-    play = SCENE.mesh.backlash / math.cos(GEOMETRY.pressure_angle)
+    across = thickness(picture.pinion) + thickness(picture.gear)
+    play = picture.gaps * SCENE.mesh.backlash / math.cos(GEOMETRY.pressure_angle)
     # the flanks between drawn points are chords: 40 points on 9 um
     assert across + play == pytest.approx(pitch, abs=2e-9)
 
 
-@pytest.mark.parametrize("picture", [PICTURE, FEW], ids=["preset", "others"])
+@pytest.mark.parametrize("picture", [PICTURE, FEW, WIDE], ids=["preset", "others", "wide gaps"])
 def test_teeth_do_not_overlap_unless_the_gap_is_negative(picture):
-    pitch, b = picture.geometry.base_pitch, picture.half_backlash
+    pitch, b = picture.geometry.base_pitch, 0.5 * SCENE.mesh.backlash
     for u in (-b, 0.0, b):
         for travel in np.linspace(0.0, 1.0, 13) * pitch:
             turned = picture.turned(travel, u)

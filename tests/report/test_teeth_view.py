@@ -38,7 +38,7 @@ const frames = (count) => new Promise((done) => {
   await frames(3);
   note("slider");
   const box = plot.getBoundingClientRect();
-  plot.dispatchEvent(new PointerEvent("pointermove", { clientX: box.right - 10, clientY: box.top + 20 }));
+  plot.dispatchEvent(new PointerEvent("pointermove", { clientX: box.right - 4, clientY: box.top + 20 }));
   await frames(3);
   note("cursor");
   const choice = document.querySelector("#teeth-viewer select");

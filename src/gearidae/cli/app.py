@@ -194,6 +194,33 @@ def report(
 
 
 @app.command
+def explore(
+    archive: Annotated[Path, Parameter(help="Archive of gears to look through: a run or a sweep.")],
+    *,
+    select: Annotated[
+        list[str] | None,
+        Parameter(help="Select a part of a sweep: backlash=0.2e-6; repeatable.", consume_multiple=False),
+    ] = None,
+    start: Annotated[
+        str | None, Parameter(name="--from", help="Begin at this time: fewer samples for each picture.")
+    ] = None,
+    stop: Annotated[str | None, Parameter(name="--to", help="End at this time.")] = None,
+    output: Output = None,
+    overwrite: Overwrite = False,
+    teeth: Annotated[
+        bool,
+        Parameter(help="Add the force and state of each pair of teeth; seven runs at most run again."),
+    ] = False,
+) -> int:
+    """Write one self-contained HTML page with sliders over swept keys and time, turning gears, and verdicts."""
+    from gearidae.cli.pictures import explore_archive
+
+    return explore_archive(
+        archive, output, select=select or [], span=(start, stop), overwrite=overwrite, teeth=teeth
+    )
+
+
+@app.command
 def assess(
     signal: Annotated[
         Path, Parameter(help="Gear speed over time: text (time [s], gear_speed [rad/s]) or netCDF.")

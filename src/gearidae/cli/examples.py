@@ -21,6 +21,10 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         'gearidae plot mine.nc --picture teeth --from "76 ms" --to "79 ms" -o teeth.gif',
     ),
     "report": ("gearidae report mine.nc -o mine.html",),
+    "explore": (
+        "gearidae explore grid.nc",
+        'gearidae explore grid.nc --select backlash=0.2e-6 --from "70 ms" --to "90 ms" -o exit.html',
+    ),
     "assess": (
         "gearidae assess signal.csv --map map.nc",
         'gearidae assess signal.csv --map map.nc --anti-alias-filter "4 kHz" --history unknown',

@@ -1,4 +1,4 @@
-"""``gearidae plot`` and ``gearidae report``: a file of runs or of a study as a picture or a page."""
+"""``gearidae plot``, ``report`` and ``explore``: a file of runs or of a study as a picture or a page."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from gearidae.scene.group import did_you_mean
 from gearidae.scene.pairs import quantity
 from gearidae.studies.products import open_product
 
-_FUNCTIONS_OF_FILES = ("animate_teeth", "write")
+_NO_PICTURES = ("animate_teeth", "tooth_outline", "write")
 
 
 def picture_names() -> list[str]:
     """List the names of the pictures."""
-    return [name for name in gd.plot.__all__ if name not in _FUNCTIONS_OF_FILES]
+    return [name for name in gd.plot.__all__ if name not in _NO_PICTURES]
 
 
 @usual_style()
@@ -152,4 +152,55 @@ def report_archive(archive: Path, output: Path | None, *, overwrite: bool, teeth
     target = output or default_output(str(archive), ".html")
     target = write_report(ds, target, overwrite=overwrite, teeth=teeth)
     print_line(f"Report: {target}")
+    return DONE
+
+
+def explore_archive(
+    archive: Path,
+    output: Path | None,
+    *,
+    select: Sequence[str],
+    span: tuple[str | None, str | None],
+    overwrite: bool,
+    teeth: bool,
+) -> int:
+    """Write the page to look through the runs of an archive.
+
+    Parameters
+    ----------
+    archive : Path
+        With runs of gears.
+    output : Path or None
+        HTML file to write; None for the archive's name with ``_explore.html``.
+    select : sequence of str
+        ``dimension=value``: which part of a sweep.
+    span : tuple of str or None
+        First and last time, in seconds or with a unit.
+    overwrite : bool
+        Whether the page may replace a file.
+    teeth : bool
+        Whether to add what each pair of teeth does.
+
+    Returns
+    -------
+    int
+        Exit code.
+
+    Raises
+    ------
+    SceneError
+        If the archive cannot be read, has no such runs or no samples of them, or the page cannot be written.
+    """
+    ds, _ = open_product(archive)
+    ds = selected(ds, select, "--select", swept_dims(ds) if select else ())
+    ends = [
+        None if text is None else quantity(option, text, "s")
+        for option, text in zip(("--from", "--to"), span, strict=True)
+    ]
+    if ends != [None, None] and "time" in ds.dims:
+        ds = ds.sel(time=slice(*ends))
+    target = gd.explore(
+        ds, output or default_output(str(archive), "_explore.html"), overwrite=overwrite, teeth=teeth
+    )
+    print_line(f"Page: {target}")
     return DONE

@@ -25,7 +25,7 @@ from gearidae.studies.declared import command_help
 
 __all__ = ["app", "session"]
 
-_WRITERS = {"init", "plot", "report", "run", "sweep", *command_help()}
+_WRITERS = {"explore", "init", "plot", "report", "run", "sweep", *command_help()}
 """Commands that write a file. The output of the other commands is their result and is not suppressed."""
 
 _WRITTEN = ("-o", "--output", "--picture", "--asperities", "init")

@@ -29,6 +29,7 @@ from gearidae.plot.spectra import orders as orders
 from gearidae.plot.spectra import power_spectrum as power_spectrum
 from gearidae.plot.spectra import spectrogram as spectrogram
 from gearidae.plot.surface import surface as surface
+from gearidae.plot.tooth_shape import tooth_outline as tooth_outline
 from gearidae.plot.torque import contact_torque as contact_torque
 from gearidae.studies.declared import studies
 

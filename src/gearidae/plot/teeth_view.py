@@ -16,7 +16,7 @@ from gearidae.archive.select import run_scene
 from gearidae.drawing.picture import new_picture
 from gearidae.drawing.style import NEGATIVE, POSITIVE, runs_of, scale_for, tidy
 from gearidae.plot.asperities import COATING, FLANKS, close_up, joined_asperities
-from gearidae.plot.tooth_shape import GearPicture, contact_points, mesh_picture
+from gearidae.plot.tooth_shape import GearPicture, contact_points, tooth_outline
 from gearidae.records import Flank
 from gearidae.records.tooth_states import ContactState, MeshState, ToothContact
 from gearidae.scene import GearScene, require_gears
@@ -124,7 +124,7 @@ class TeethView:
 
     def __init__(self, ds: xr.Dataset, states: Sequence[MeshState]) -> None:
         self._scene = require_gears(run_scene(ds))
-        self._picture = mesh_picture(self._scene)
+        self._picture = tooth_outline(self._scene)
         self._largest = max(
             (abs(contact.force) for state in states for contact in state.contacts), default=0.0
         )

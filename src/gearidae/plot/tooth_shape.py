@@ -14,14 +14,16 @@ pair's place along the line of action is where the gear's flank crosses it.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from gearidae.arrays import Floats
+from gearidae.errors import SceneError
 from gearidae.mesh.involute import Geometry
 from gearidae.records import Flank
-from gearidae.scene import GearScene
+from gearidae.scene import Scene, require_gears
 
 _FLANK_POINTS = 40
 _DEDENDUM = 1.25  # modules
@@ -58,15 +60,15 @@ class ToothedWheel:
     rim_radius: float
     turning: int
 
-    def outline(self, turned: float, count: int) -> Floats:
-        """Outline of the teeth nearest to the mesh, closed by the rim.
+    def outline(self, turned: float = 0.0, count: int | None = None) -> Floats:
+        """Outline of the wheel, or of the teeth nearest to the mesh, closed by the rim.
 
         Parameters
         ----------
-        turned : float
+        turned : float, optional
             Angle that tooth 0 has turned beyond the pitch point [rad], in the wheel's own sense.
-        count : int
-            Teeth on either side of the one at the pitch point.
+        count : int, optional
+            Teeth on either side of the one at the pitch point; by default all.
 
         Returns
         -------
@@ -74,26 +76,43 @@ class ToothedWheel:
             Points [m], the pitch point at the origin.
         """
         pitch = 2.0 * math.pi / self.teeth
+        if count is None:
+            angles = [self.turning * turned - k * pitch for k in range(self.teeth)]
+            whole: Floats = self._teeth_at(angles) + np.array([0.0, self.centre])
+            return whole
         count = min(count, (self.teeth - 1) // 2)
         beyond = turned - round(turned / pitch) * pitch
-        # clockwise, as the points of a tooth
-        angles = [self.turning * beyond - k * pitch for k in range(-count, count + 1)]
-        body = np.concatenate([_rotated(self.tooth, angle) for angle in angles])
+        body = self._teeth_at([self.turning * beyond - k * pitch for k in range(-count, count + 1)])
         first, last = (math.atan2(point[1], point[0]) for point in (body[0], body[-1]))
         back = np.linspace(last, last + (first - last) % (2.0 * math.pi), 40)
         rim = self.rim_radius * np.stack([np.cos(back), np.sin(back)], axis=1)
         outline: Floats = np.concatenate([body, rim]) + np.array([0.0, self.centre])
         return outline
 
+    def _teeth_at(self, angles: Sequence[float]) -> Floats:
+        """Outlines of teeth one after another, clockwise as the points of a tooth."""
+        return np.concatenate([_rotated(self.tooth, angle) for angle in angles])
+
 
 @dataclass(frozen=True, slots=True)
 class GearPicture:
-    """Both gears and the line of action of a scene; lengths in m."""
+    """Both gears and the line of action of a scene; lengths in m.
+
+    Attributes
+    ----------
+    geometry : Geometry
+    pinion, gear : ToothedWheel
+    half_backlash : float
+        Half of the backlash as it is drawn [m].
+    gaps : float
+        How many times its size a gap is drawn.
+    """
 
     geometry: Geometry
     pinion: ToothedWheel
     gear: ToothedWheel
     half_backlash: float
+    gaps: float = 1.0
 
     def turned(self, travel: float, transmission_error: float) -> tuple[float, float]:
         """Angles that tooth 0 of pinion and gear have turned beyond the pitch point [rad].
@@ -101,7 +120,8 @@ class GearPicture:
         A static transmission error is drawn as a turn of the pinion, so that the drawn gap is the true one.
         """
         beyond = travel - self.geometry.approach
-        pinion = (beyond - self.half_backlash + transmission_error) / self.geometry.base_radius_pinion
+        ahead = self.gaps * transmission_error - self.half_backlash
+        pinion = (beyond + ahead) / self.geometry.base_radius_pinion
         return pinion, beyond / self.geometry.base_radius_gear
 
     def line(self, flank: Flank, place: float) -> Floats:
@@ -111,29 +131,51 @@ class GearPicture:
         return np.array([beyond * across, -beyond * math.sin(angle)])
 
 
-def mesh_picture(scene: GearScene) -> GearPicture:
-    """Lay out the gears of a scene for drawing.
+def tooth_outline(scene: Scene, *, gaps: float = 1.0) -> GearPicture:
+    r"""Lay out the gears of a scene: the outlines of their teeth, to scale, and where they stand to each other.
 
     Parameters
     ----------
     scene : Scene
         With gears.
+    gaps : float, optional
+        How many times their size the gaps between the teeth are drawn, on both flanks alike: the pinion's teeth are
+        thinner by so many times the backlash. Gaps are nanometres beside micrometres of a module.
+
+    Returns
+    -------
+    GearPicture
+        ``pinion.tooth`` and ``gear.tooth``, shape (n, 2) [m]: one tooth in the frame of its gear;
+        ``pinion.outline()`` and ``gear.outline()``: the whole gear, with the pitch point as origin;
+        ``turned(travel, transmission_error)``: the angles of both at a sample of a run.
 
     Raises
     ------
     SceneError
-        If the scene has no gears.
+        If the scene has no gears, or `gaps` is no positive number, or so large that it leaves no teeth.
+
+    Notes
+    -----
+    Involutes of standard full-depth teeth between the root circle, 1.25 modules below the pitch circle, and the tips;
+    tooth ends recede by :math:`d^2 / 2\rho` as in the model (Teodorescu et al. 2009,
+    doi:10.1016/j.triboint.2008.05.019).
     """
+    scene = require_gears(scene)
     geometry = scene.geometry
+    backlash = gaps * scene.mesh.backlash
+    if not 0.0 <= backlash < 0.5 * geometry.base_pitch or not gaps > 0.0:
+        most = 0.5 * geometry.base_pitch / scene.mesh.backlash if scene.mesh.backlash else math.inf
+        raise SceneError(
+            "gaps", gaps, f"must be positive and less than {most:.3g}, which leaves the pinion no teeth"
+        )
     rounding = scene.mesh.tip_relief_radius, _ROUNDED * scene.surface.roughness
     half_pitch = 0.5 * geometry.base_pitch
     return GearPicture(
         geometry=geometry,
-        pinion=_wheel(
-            geometry, geometry.pinion_teeth, geometry.recess, half_pitch - scene.mesh.backlash, rounding, 1
-        ),
+        pinion=_wheel(geometry, geometry.pinion_teeth, geometry.recess, half_pitch - backlash, rounding, 1),
         gear=_wheel(geometry, geometry.gear_teeth, geometry.approach, half_pitch, rounding, -1),
-        half_backlash=0.5 * scene.mesh.backlash,
+        half_backlash=0.5 * backlash,
+        gaps=gaps,
     )
 
 
@@ -152,7 +194,7 @@ def contact_points(picture: GearPicture, flank: Flank, place: float, gap: float)
     pinion, gear : ndarray, shape (2,)
         Points [m], a gap apart. Relief of rounded ends is left to the pinion's.
     """
-    return picture.line(flank, place - gap), picture.line(flank, place)
+    return picture.line(flank, place - picture.gaps * gap), picture.line(flank, place)
 
 
 def _wheel(

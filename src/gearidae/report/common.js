@@ -44,6 +44,19 @@ const gearidae = (() => {
     return Number((value * scale.factor).toPrecision(digits || 4)) + " " + scale.prefix + unit;
   }
 
+  // Round numbers between two, some of the wanted number of them.
+  function ticks(low, high, wanted) {
+    const rough = (high - low) / Math.max(wanted, 1), power = 10 ** Math.floor(Math.log10(rough));
+    const step = [1, 2, 5, 10].find((each) => each * power >= rough * 0.999) * power;
+    const found = [];
+    for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i++) found.push(i * step);
+    return { found, digits: Math.max(0, Math.min(12, -Math.floor(Math.log10(step) + 1e-9))) };
+  }
+
+  function readable(prefix, unit) {
+    return unit === "rad s-1" ? (prefix ? prefix + "rad/s" : "rad/s") : prefix + unit.replace("m s-1", "m/s");
+  }
+
   // Draws anew whenever the size, the colours or the medium change.
   function whenSeenAnew(draw, later) {
     window.addEventListener("resize", later);
@@ -68,5 +81,5 @@ const gearidae = (() => {
 
   const slug = (text) => text.toLowerCase().replace(/[^a-z0-9]+/g, "_").replace(/^_+|_+$/g, "") || "report";
 
-  return { slug, decode, element, prefixOf, style, colour, seconds, quantity, whenSeenAnew, penOf };
+  return { slug, decode, element, prefixOf, ticks, readable, style, colour, seconds, quantity, whenSeenAnew, penOf };
 })();

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import base64
 import json
 from collections.abc import Iterable, Sequence
 from html import escape
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from gearidae.printable import printable
 
@@ -84,6 +88,11 @@ def json_block(identity: str, data: Any) -> str:
     for char, escaped in (("<", "\\u003c"), (">", "\\u003e"), ("&", "\\u0026")):
         content = content.replace(char, escaped)
     return f'<script type="application/json" id="{text(identity)}">{content}</script>'
+
+
+def numbers(values: NDArray[Any]) -> str:
+    """Write numbers of any shape as base64 text of little-endian float32 numbers, row by row."""
+    return base64.b64encode(np.asarray(values).astype("<f4").tobytes()).decode("ascii")
 
 
 def _class(css: str) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import math
 from typing import Any
 
@@ -83,7 +82,7 @@ def pack_life(ds: xr.Dataset) -> dict[str, Any]:
             "teeth": int(ds.sizes["tooth"]),
             "low": float(tables.min()),
             "high": float(tables.max()),
-            "tables": [base64.b64encode(table.astype("<f4").tobytes()).decode("ascii") for table in tables],
+            "tables": [html.numbers(table) for table in tables],
         }
     return data
 

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
-from importlib.resources import files
 from pathlib import Path
 
 import xarray as xr
 
 from gearidae.analysis.verdict.headline import headline
-from gearidae.archive.select import scene_of
 from gearidae.archive.specimen import specimen_note
 from gearidae.archive.target import whole_file
 from gearidae.errors import SceneError
 from gearidae.plot.overview import usual_pictures
 from gearidae.progress import in_words
 from gearidae.report import html
+from gearidae.report.frame import page
 from gearidae.report.life import life_table, life_viewer
 from gearidae.report.pictures import figures, pictures
 from gearidae.report.series import MOST_VALUES, pack
@@ -26,17 +24,12 @@ from gearidae.report.tables import (
     law_table,
     member_table,
     outcome_table,
-    parameter_tables,
-    provenance_list,
     summary_tables,
-    validity_table,
 )
 from gearidae.report.teeth import pack_runs, runs_with_teeth, time_to_repeat
 from gearidae.studies.declared import studies
 from gearidae.studies.products import answer, kind_of
 
-_POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
-"""What the browser may load for the page: nothing from anywhere."""
 _SOON = 60.0
 """Wall time [s] up to which runs are repeated for the view of the teeth without being asked for."""
 
@@ -75,8 +68,8 @@ def build_report(ds: xr.Dataset, *, most_values: int = MOST_VALUES, teeth: bool 
         html.section("pictures", "Pictures", pictures(ds)),
         html.section("events", "Events", event_table(ds)),
     )
-    scripts = ("common.js", "save.js", "box.js", "viewer.js", "teeth.js")
-    return _page(ds, headline(ds), sections, scripts)
+    scripts = ("common.js", "save.js", "box.js", "viewer.js", "mesh.js", "teeth.js")
+    return page(ds, "report", headline(ds), sections, scripts)
 
 
 def _specimen(ds: xr.Dataset) -> str:
@@ -94,54 +87,14 @@ def _study_page(ds: xr.Dataset, kind: str) -> str:
     if study.viewer == "life":
         viewer = html.section("life", "Over passages", life_viewer(ds))
         sections = (viewer, html.section("outcome", "Steps", life_table(ds)), shown)
-        return _page(ds, result.sentence, sections, ("common.js", "save.js", "life.js"))
+        return page(ds, "report", result.sentence, sections, ("common.js", "save.js", "life.js"))
     rows = () if study.rows_are_drawn else result.rows
     sections = (
         html.section("outcome", "Outcome", answer_tables(rows), law_table(ds)),
         shown,
         html.section("members", "Runs", member_table(ds, study.member_columns)),
     )
-    return _page(ds, result.sentence, sections, ("common.js", "save.js"))
-
-
-def _page(ds: xr.Dataset, sentence: str, sections: Sequence[str], scripts: Sequence[str]) -> str:
-    """Put a page together from its own sections and those that all pages have."""
-    name = str(scene_of(ds).get("name", "gearidae"))
-    common = (
-        html.section("validity", "How far the model holds", validity_table(ds)),
-        html.section("parameters", "Parameters", parameter_tables(ds)),
-        html.section("provenance", "Provenance", provenance_list(ds)),
-    )
-    main = "\n".join(part for part in (*sections, *common) if part)
-    script = "\n".join(_resource(file) for file in scripts)
-    return f"""<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta name="color-scheme" content="light dark">
-<meta http-equiv="Content-Security-Policy" content="{html.text(_POLICY)}">
-<meta name="generator" content="gearidae {html.text(ds.attrs.get("product_version", ""))}">
-<title>{html.text(name)}: report</title>
-<style>
-{_resource("page.css")}
-</style>
-</head>
-<body>
-<header>
-<h1>{html.text(name.replace("_", " "))}</h1>
-<p class="headline">{html.text(sentence)}</p>
-{html.paragraph(ds.attrs.get("summary", ""), "summary")}
-</header>
-<main>
-{main}
-</main>
-<script>
-{script}
-</script>
-</body>
-</html>
-"""
+    return page(ds, "report", result.sentence, sections, ("common.js", "save.js"))
 
 
 def write_report(
@@ -201,7 +154,3 @@ def _teeth(ds: xr.Dataset, wanted: bool | None) -> str:
     except SceneError as error:
         return html.paragraph(f"Not shown. {error}")
     return '<div id="teeth-viewer"></div>\n' + html.json_block("teeth-data", data)
-
-
-def _resource(name: str) -> str:
-    return (files("gearidae.report") / name).read_text(encoding="utf-8")

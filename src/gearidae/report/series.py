@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 from typing import Any
 
 import numpy as np
@@ -15,6 +14,7 @@ from gearidae.archive.variables import SAMPLES
 from gearidae.drawing.style import runs_of
 from gearidae.errors import SceneError
 from gearidae.records import EventKind, sampled_columns
+from gearidae.report import html
 
 MOST_VALUES = 1_500_000
 """Numbers a page holds at most (8 MB of text); longer series are reduced to the extremes of intervals."""
@@ -48,7 +48,7 @@ def pack(ds: xr.Dataset, most_values: int = MOST_VALUES) -> dict[str, Any]:
     if not shown:
         return {}
     share = max(2, most_values // (len(names) * len(shown)))
-    size = _block(samples, share)
+    size = block(samples, share)
     series = []
     for name in names:
         variable = SAMPLES[name]
@@ -58,7 +58,7 @@ def pack(ds: xr.Dataset, most_values: int = MOST_VALUES) -> dict[str, Any]:
                 "label": variable.long_name,
                 "unit": "" if variable.units == "1" else variable.units,
                 "shown": name in _SHOWN_FIRST,
-                "runs": [_encode(_reduced(run.data[name], size)) for run in shown],
+                "runs": [html.numbers(reduced(run.data[name], size)) for run in shown],
             }
         )
     return {
@@ -71,12 +71,12 @@ def pack(ds: xr.Dataset, most_values: int = MOST_VALUES) -> dict[str, Any]:
     }
 
 
-def _block(samples: int, share: int) -> int:
+def block(samples: int, share: int) -> int:
     """Samples per interval so that two values of each interval are at most `share` values."""
     return 1 if samples <= share else -(-2 * samples // share)
 
 
-def _reduced(values: xr.DataArray, size: int) -> NDArray[np.float64]:
+def reduced(values: xr.DataArray, size: int) -> NDArray[np.float64]:
     """Reduce a variable of any length, read in pieces of whole intervals."""
     step = max(1, PIECE // size) * size
     return np.concatenate([_extremes(part, size) for _, part in pieces(values, size=step)])
@@ -95,10 +95,6 @@ def _extremes(values: NDArray[np.float64], size: int) -> NDArray[np.float64]:
         [padded[rows, np.minimum(first, second)], padded[rows, np.maximum(first, second)]], axis=1
     )
     return pairs.reshape(-1)
-
-
-def _encode(values: NDArray[np.float64]) -> str:
-    return base64.b64encode(values.astype("<f4").tobytes()).decode("ascii")
 
 
 def _contacts(run: xr.Dataset) -> dict[str, list[float]]:

@@ -2,13 +2,14 @@
 (() => {
   "use strict";
   const { decode, element, style, colour, seconds, quantity, whenSeenAnew, penOf } = gearidae;
+  const { COAST, onLine, turned, drawPair, arrow } = gearidae.mesh;
   const holder = document.getElementById("teeth-viewer");
   const source = document.getElementById("teeth-data");
   if (!holder || !source) return;
   const data = JSON.parse(source.textContent);
   const ACROSS = 4.6, DOWN = 1.9, UP = 2.0, TEETH = 5, LONGEST = 1.4; // modules; teeth on either side
   const BELOW = 3.5, ABOVE = 12; // roughnesses
-  const OPEN = 0, LOADING = 1, PARTLY = 2, FULLY = 3, COAST = 1;
+  const OPEN = 0, LOADING = 1, PARTLY = 2, FULLY = 3;
   const PLAYED = 14; // seconds for what is in view
   const FRAME = data.columns.frame.length, PAIR = data.columns.pair.length;
   const still = window.matchMedia("(prefers-reduced-motion: reduce)");
@@ -52,61 +53,14 @@
 
   const nearest = (time) => Math.max(0, Math.min(run.rows - 1, Math.round(time / frameOf(run.rows - 1).time * (run.rows - 1)) || 0));
 
-  // Point of a flank's line of action, in modules; the pitch point is the origin.
-  function onLine(flank, place) {
-    const beyond = (place - run.approach) / run.module;
-    return [(flank === COAST ? -1 : 1) * beyond * Math.cos(run.angle), -beyond * Math.sin(run.angle)];
-  }
-
-  function outline(pen, wheel, turned, x, y) {
-    const pitch = 2 * Math.PI / wheel.teeth, count = Math.min(TEETH, Math.floor((wheel.teeth - 1) / 2));
-    const beyond = turned - Math.round(turned / pitch) * pitch;
-    pen.beginPath();
-    let first = null, last = null;
-    for (let k = -count; k <= count; k++) {
-      const angle = wheel.turning * beyond - k * pitch, c = Math.cos(angle), s = Math.sin(angle);
-      for (let i = 0; i < wheel.tooth.length; i += 2) {
-        const a = c * wheel.tooth[i] - s * wheel.tooth[i + 1], b = s * wheel.tooth[i] + c * wheel.tooth[i + 1];
-        first = first || [a, b];
-        last = [a, b];
-        pen.lineTo(x(a), y(b + wheel.centre));
-      }
-    }
-    const size = wheel.rim / Math.hypot(...last);
-    const from = Math.atan2(last[1], last[0]), sweep = (Math.atan2(first[1], first[0]) - from + 4 * Math.PI) % (2 * Math.PI);
-    for (let k = 0; k <= 40; k++) {
-      const angle = from + sweep * k / 40, radius = size * Math.hypot(...last);
-      pen.lineTo(x(radius * Math.cos(angle)), y(radius * Math.sin(angle) + wheel.centre));
-    }
-    pen.closePath();
-  }
-
   function drawMesh(now, pairs) {
     const sheet = penOf(mesh);
     if (!sheet) return;
     const { pen, width, height } = sheet;
     const size = Math.min(width / (2 * ACROSS), height / (UP + DOWN));
     const x = (a) => width / 2 + size * a, y = (b) => height / 2 + size * ((UP - DOWN) / 2 - b);
-    const travel = now.phase * run.pitch - run.approach;
-    const angles = [(travel - run.halfBacklash + now.transmission_error) / run.pinion.base, travel / run.gear.base];
-    [run.pinion, run.gear].forEach((wheel, k) => {
-      outline(pen, wheel, angles[k], x, y);
-      pen.fillStyle = style(k ? "--gear" : "--pinion");
-      pen.strokeStyle = style("--ink");
-      pen.lineWidth = 1;
-      pen.fill();
-      pen.stroke();
-    });
     const used = pairs.length && pairs[0].flank === COAST ? COAST : 0;
-    for (const flank of [0, COAST]) {
-      pen.setLineDash(flank === used ? [] : [5, 4]);
-      pen.strokeStyle = style(flank === used ? "--ink" : "--faint");
-      pen.beginPath();
-      pen.moveTo(...at(onLine(flank, 0)));
-      pen.lineTo(...at(onLine(flank, run.path)));
-      pen.stroke();
-    }
-    pen.setLineDash([]);
+    drawPair(pen, run, turned(run, now.phase * run.pitch, now.transmission_error), x, y, TEETH, used);
     function at([a, b]) { return [x(a), y(b)]; }
     pen.fillStyle = style("--ink");
     pen.font = "13px system-ui, sans-serif";
@@ -115,26 +69,16 @@
     const way = now.gear_speed < 0 ? " ←" : " →";
     pen.fillText("pinion, drives" + way, 8, 14);
     pen.fillText("gear" + way, 8, height - 14);
-    for (const pair of pairs) force(pen, pair, at, size);
+    for (const pair of pairs) force(pen, pair, at);
     for (const pair of pairs) mark(pen, pair, at);
   }
 
   // The force of a pair on the gear: long enough to be seen beside the mark, none for a hundredth of the largest.
-  function force(pen, pair, at, size) {
+  function force(pen, pair, at) {
     if (!(Math.abs(pair.force) > 0.01 * run.largest) || pair.state === OPEN) return;
-    const [a, b] = at(onLine(pair.flank, pair.place)), [c, d] = at(onLine(pair.flank, pair.place + run.module));
+    const [a, b] = at(onLine(run, pair.flank, pair.place)), [c, d] = at(onLine(run, pair.flank, pair.place + run.module));
     const share = Math.max(Math.abs(pair.force) / run.largest, 0.2) * Math.sign(pair.force) * LONGEST;
-    const along = [(c - a) * share, (d - b) * share], length = Math.hypot(...along), head = Math.min(12, length);
-    const unit = [along[0] / length, along[1] / length], tip = [a + along[0], b + along[1]];
-    const foot = [tip[0] - head * unit[0], tip[1] - head * unit[1]];
-    pen.strokeStyle = pen.fillStyle = colour(pair.force > 0 ? 0 : 1);
-    pen.lineWidth = 3;
-    pen.beginPath(); pen.moveTo(a, b); pen.lineTo(...foot); pen.stroke();
-    pen.beginPath();
-    pen.moveTo(...tip);
-    pen.lineTo(foot[0] - unit[1] * head / 2, foot[1] + unit[0] * head / 2);
-    pen.lineTo(foot[0] + unit[1] * head / 2, foot[1] - unit[0] * head / 2);
-    pen.fill();
+    arrow(pen, [a, b], [(c - a) * share, (d - b) * share], colour(pair.force > 0 ? 0 : 1));
   }
 
   const faceOf = (state) => ({ [OPEN]: style("--ground"), [LOADING]: colour(0), [PARTLY]: colour(4), [FULLY]: colour(1) })[state] || style("--faint");
@@ -152,7 +96,7 @@
   }
 
   function mark(pen, pair, at) {
-    const [a, b] = at(onLine(pair.flank, pair.place));
+    const [a, b] = at(onLine(run, pair.flank, pair.place));
     symbol(pen, pair.state, a, b);
     pen.fillStyle = style("--ground");
     pen.beginPath(); pen.arc(a + 9, b - 24, 11, 0, 2 * Math.PI); pen.fill();

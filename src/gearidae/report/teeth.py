@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import base64
 import math
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from gearidae.archive.select import is_roller, motion_samples, run_scene, run_value
 from gearidae.arrays import Floats
@@ -17,8 +15,9 @@ from gearidae.drawing.style import Run, runs_of
 from gearidae.errors import SceneError
 from gearidae.plot.asperities import flank_asperities, half_width, joined_asperities, touching_arc
 from gearidae.plot.teeth_view import STATE_WORDS, mesh_states, nearest_pairs, pairs_at_most
-from gearidae.plot.tooth_shape import ToothedWheel, mesh_picture
 from gearidae.records import sampled_columns
+from gearidae.report import html
+from gearidae.report.gears import pack_gears
 from gearidae.scene import MATERIAL_NAMES, GearScene, require_gears
 
 if TYPE_CHECKING:
@@ -111,7 +110,6 @@ def time_to_repeat(shown: list[Run]) -> float:
 
 def _pack_run(run: xr.Dataset, most: int) -> dict[str, Any]:
     scene = require_gears(run_scene(run))
-    picture, module = mesh_picture(scene), scene.geometry.module
     samples = motion_samples(run)
     # samples themselves and not times between, so that what is shown is what was recorded
     every = max(1, math.ceil((samples - 1) / (most - 1)))
@@ -122,20 +120,13 @@ def _pack_run(run: xr.Dataset, most: int) -> dict[str, Any]:
     return {
         "every": every,
         "places": places,
-        "module": module,
-        "approach": picture.geometry.approach,
-        "path": picture.geometry.path_length,
-        "angle": picture.geometry.pressure_angle,
-        "pitch": picture.geometry.base_pitch,
-        "halfBacklash": picture.half_backlash,
-        "pinion": _wheel(picture.pinion, module),
-        "gear": _wheel(picture.gear, module),
+        **pack_gears(scene),
         "roughness": scene.surface.roughness,
         "halfWidth": half_width(scene),
         "population": scene.contact.is_discrete,
         "asperities": list(asperities.rows),
-        "joined": _encode(np.array(asperities.joined)),
-        "states": _encode(np.array(rows).ravel()),
+        "joined": html.numbers(np.array(asperities.joined)),
+        "states": html.numbers(np.array(rows).ravel()),
     }
 
 
@@ -173,7 +164,7 @@ class _Asperities:
         """Places and heights of the asperities of a pair, shape (n, 2), and the number of the row of its tallest."""
         drawn = flank_asperities(self.scene, pair, flank)
         tallest = drawn.some(np.argsort(-drawn.height)[:_TALLEST])
-        row = self.rows.setdefault(_encode(np.stack(tallest).ravel()), len(self.rows))
+        row = self.rows.setdefault(html.numbers(np.stack(tallest).ravel()), len(self.rows))
         return np.stack([drawn.arc, drawn.height], axis=1), row
 
 
@@ -199,18 +190,3 @@ def _pair(asperities: _Asperities, contact: ToothContact) -> list[float]:
         contact.force,
     ]
     return [*numbers, *joined, *states, joined_asperities(asperities.scene, contact), *asperities.of(contact)]
-
-
-def _wheel(wheel: ToothedWheel, module: float) -> dict[str, Any]:
-    return {
-        "tooth": [round(float(number), 4) for number in (wheel.tooth / module).ravel()],
-        "teeth": wheel.teeth,
-        "centre": wheel.centre / module,
-        "base": wheel.base_radius,
-        "rim": wheel.rim_radius / module,
-        "turning": wheel.turning,
-    }
-
-
-def _encode(values: NDArray[Any]) -> str:
-    return base64.b64encode(np.asarray(values).astype("<f4").tobytes()).decode("ascii")

@@ -1,7 +1,7 @@
 // Time series of a report: panels over one common time axis. No library, no network.
 (() => {
   "use strict";
-  const { decode, element, prefixOf, style, colour, seconds, whenSeenAnew, penOf } = gearidae;
+  const { decode, element, prefixOf, ticks, readable, style, colour, seconds, whenSeenAnew, penOf } = gearidae;
   const holder = document.getElementById("viewer");
   const source = document.getElementById("data");
   if (!holder || !source) return;
@@ -14,14 +14,6 @@
   const hidden = new Set();
   const panels = [];
   let cursor = null, followed = null, waiting = false, boxing = false;
-
-  function ticks(low, high, wanted) {
-    const rough = (high - low) / Math.max(wanted, 1), power = 10 ** Math.floor(Math.log10(rough));
-    const step = [1, 2, 5, 10].find((each) => each * power >= rough * 0.999) * power;
-    const found = [];
-    for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i++) found.push(i * step);
-    return { found, digits: Math.max(0, Math.min(12, -Math.floor(Math.log10(step) + 1e-9))) };
-  }
 
   function later() {
     if (waiting) return;
@@ -174,10 +166,6 @@
         pen.stroke();
       }
     });
-  }
-
-  function readable(prefix, unit) {
-    return unit === "rad s-1" ? (prefix ? prefix + "rad/s" : "rad/s") : prefix + unit.replace("m s-1", "m/s");
   }
 
   function report() {

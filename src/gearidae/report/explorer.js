@@ -1,0 +1,294 @@
+// Runs to look through: sliders over what was swept and over time, turning gears, the force on the gear, speed and torque.
+(() => {
+  "use strict";
+  const { decode, element, prefixOf, ticks, readable, style, colour, seconds, quantity, whenSeenAnew, penOf } = gearidae;
+  const { COAST, onLine, turned, drawPair, arrow } = gearidae.mesh;
+  const holder = document.getElementById("explorer"), source = document.getElementById("explorer-data");
+  if (!holder || !source) return;
+  const data = JSON.parse(source.textContent);
+  const ACROSS = 4.6, DOWN = 1.9, UP = 2.0, TEETH = 5, LONGEST = 1.4; // modules; teeth on either side
+  const LEFT = 62, RIGHT = 10, TOP = 8, BOTTOM = 22;
+  const PLAYED = 14; // seconds for all pictures
+  const WIDE = data.columns.length;
+  let run = null, frame = 0, playing = null, waiting = false;
+  let places = data.dims.map(() => 0);
+
+  function take(number) {
+    run = data.runs[number];
+    run.number = number;
+    if (!run.numbers) {
+      run.numbers = decode(run.frames);
+      run.rows = run.numbers.length / WIDE;
+      run.lines = run.curves.map(decode);
+    }
+    run.look = data.looks[data.verdicts[number]];
+  }
+
+  // The picture in view, or the last one of a run that ended before; null of a run that has none.
+  function now() {
+    if (!run.rows) return null;
+    const start = WIDE * Math.min(frame, run.rows - 1), found = {};
+    data.columns.forEach((name, k) => { found[name] = run.numbers[start + k]; });
+    return found;
+  }
+
+  const timeOf = (number) => data.start + (data.end - data.start) * Math.min(1, number / Math.max(1, data.frames - 1));
+
+  // Pairs on the path of contact of a flank, by their places [m]: the coast flank mirrors the other, half a pitch later.
+  function pairPlaces(gears, flank, travel) {
+    const phase = flank === COAST ? 2 * gears.approach / gears.pitch + 0.5 - travel : travel, found = [];
+    for (let place = gears.pitch * (phase - Math.floor(phase)); place <= gears.path; place += gears.pitch) found.push(place);
+    return found;
+  }
+
+  function drawMesh(state, gears) {
+    const sheet = penOf(mesh);
+    if (!sheet) return;
+    const { pen, width, height } = sheet, size = Math.min(width / (2 * ACROSS), height / (UP + DOWN));
+    const x = (a) => width / 2 + size * a, y = (b) => height / 2 + size * ((UP - DOWN) / 2 - b);
+    const flank = state.coast_gap < state.drive_gap ? COAST : 0;
+    drawPair(pen, gears, turned(gears, state.travel * gears.pitch, state.transmission_error), x, y, TEETH, flank);
+    pen.font = "13px system-ui, sans-serif";
+    pen.textBaseline = "middle";
+    pen.textAlign = "left";
+    pen.fillStyle = style("--ink");
+    const way = state.gear_speed < 0 ? " ←" : " →";
+    pen.fillText("pinion, drives" + way, 8, 14);
+    pen.fillText("gear" + way, 8, height - 14);
+    const push = flank === COAST ? -state.mesh_force : state.mesh_force; // positive pushes the teeth apart
+    if (Math.abs(push) > 0.01 * data.largest) {
+      const [a, b] = onLine(gears, flank, gears.approach), [c, d] = onLine(gears, flank, gears.approach + gears.module);
+      const long = size * LONGEST * Math.sign(push) * Math.max(Math.abs(push) / data.largest, 0.2);
+      arrow(pen, [x(a), y(b)], [(c - a) * long, (b - d) * long], colour(push > 0 ? 0 : 1));
+    }
+    for (const place of pairPlaces(gears, flank, state.travel)) {
+      const [a, b] = onLine(gears, flank, place);
+      pen.beginPath();
+      pen.arc(x(a), y(b), 5, 0, 2 * Math.PI);
+      pen.fillStyle = state.pairs_in_contact > 0 ? colour(push < 0 ? 1 : 0) : style("--ground");
+      pen.strokeStyle = style("--ink");
+      pen.lineWidth = 1.5;
+      pen.fill();
+      pen.stroke();
+    }
+  }
+
+  // Path of a whole wheel about its centre, in modules; made once.
+  function wholeOf(wheel) {
+    if (wheel.whole) return wheel.whole;
+    wheel.whole = new Path2D();
+    wheel.reach = 0;
+    for (let k = 0; k < wheel.teeth; k++) {
+      const angle = -2 * Math.PI * k / wheel.teeth, c = Math.cos(angle), s = Math.sin(angle);
+      for (let i = 0; i < wheel.tooth.length; i += 8) { // every fourth point: a tooth is a few pixels
+        const a = wheel.tooth[i], b = wheel.tooth[i + 1];
+        wheel.whole.lineTo(c * a - s * b, s * a + c * b);
+        wheel.reach = Math.max(wheel.reach, Math.hypot(a, b));
+      }
+    }
+    wheel.whole.closePath();
+    return wheel.whole;
+  }
+
+  // Both gears as a whole, the pinion to the left; a dot stands on tooth 0.
+  function drawWhole(state, gears) {
+    const sheet = penOf(whole);
+    if (!sheet) return;
+    const { pen, width, height } = sheet, wheels = [gears.pinion, gears.gear];
+    wheels.forEach(wholeOf);
+    const long = wheels.reduce((sum, wheel) => sum + wheel.reach + Math.abs(wheel.centre), 1), tall = 2 * Math.max(...wheels.map((wheel) => wheel.reach)) + 1;
+    const size = Math.min(width / long, height / tall);
+    const pitchPoint = (width - size * long) / 2 + size * (gears.pinion.centre + gears.pinion.reach + 0.5);
+    const angles = turned(gears, state.travel * gears.pitch, state.transmission_error);
+    wheels.forEach((wheel, k) => {
+      pen.save();
+      pen.translate(pitchPoint, height / 2);
+      pen.scale(size, -size);
+      pen.rotate(Math.PI / 2);
+      pen.translate(0, wheel.centre);
+      pen.rotate(wheel.turning * angles[k]);
+      pen.fillStyle = style(k ? "--gear" : "--pinion");
+      pen.strokeStyle = style("--ink");
+      pen.lineWidth = 0.8 / size;
+      pen.fill(wheel.whole);
+      pen.stroke(wheel.whole);
+      pen.fillStyle = style("--ink");
+      pen.beginPath(); pen.arc(0, 0, 3 / size, 0, 2 * Math.PI); pen.fill();
+      pen.beginPath(); pen.arc(0, -Math.sign(wheel.centre) * (wheel.reach - 4), Math.max(3 / size, 0.6), 0, 2 * Math.PI); pen.fill();
+      pen.restore();
+    });
+  }
+
+  function drawCurve(plot, k) {
+    const sheet = penOf(plot.canvas);
+    if (!sheet) return;
+    const { pen, width, height } = sheet, inner = width - LEFT - RIGHT, tall = height - TOP - BOTTOM;
+    let [low, high] = data.ranges[k];
+    const margin = 0.05 * (high - low) || 0.05 * Math.abs(high) || 1;
+    low -= margin;
+    high += margin;
+    const scale = plot.unit === "rad s-1" ? { factor: 1, prefix: "" } : prefixOf(Math.max(Math.abs(low), Math.abs(high)));
+    plot.title.textContent = plot.label + " (" + readable(scale.prefix, plot.unit) + ")";
+    const x = (share) => LEFT + inner * share, y = (value) => TOP + tall * (high - value) / (high - low);
+    const across = prefixOf(data.end), span = data.end - data.start || 1;
+    pen.font = "12px system-ui, sans-serif";
+    pen.fillStyle = style("--faint");
+    pen.strokeStyle = style("--line");
+    pen.lineWidth = 1;
+    const lines = (found, begin, end, write) => found.forEach((tick) => {
+      pen.beginPath(); pen.moveTo(...begin(tick)); pen.lineTo(...end(tick)); pen.stroke();
+      write(tick);
+    });
+    const times = ticks(data.start * across.factor, (data.start + span) * across.factor, inner / 90), at = (tick) => x((tick / across.factor - data.start) / span);
+    pen.textAlign = "center";
+    pen.textBaseline = "top";
+    lines(times.found, (tick) => [at(tick), TOP], (tick) => [at(tick), TOP + tall], (tick) => {
+      if (at(tick) < x(1) - 24) pen.fillText(tick.toFixed(times.digits), at(tick), TOP + tall + 6);
+    });
+    pen.textAlign = "right";
+    pen.fillText(across.prefix + "s", width - RIGHT, TOP + tall + 6);
+    pen.textBaseline = "middle";
+    const up = ticks(low * scale.factor, high * scale.factor, tall / 28), beside = (tick) => y(tick / scale.factor);
+    lines(up.found, (tick) => [LEFT, beside(tick)], (tick) => [x(1), beside(tick)], (tick) => pen.fillText(tick.toFixed(up.digits), LEFT - 6, beside(tick)));
+    const values = run.lines[k];
+    pen.strokeStyle = colour(0);
+    pen.lineWidth = 1.4;
+    pen.beginPath();
+    values.forEach((value, i) => { if (!Number.isNaN(value)) pen.lineTo(x(i / (values.length - 1 || 1)), y(value)); });
+    pen.stroke();
+    const here = x((timeOf(frame) - data.start) / span);
+    pen.strokeStyle = style("--ink");
+    pen.lineWidth = 1;
+    pen.beginPath(); pen.moveTo(here, TOP); pen.lineTo(here, TOP + tall); pen.stroke();
+  }
+
+  function wordsOf(state) {
+    const time = timeOf(frame), ended = run.rows - 1 < frame && run.rows < data.frames;
+    const words = ["t = " + seconds(time)];
+    if (!state) return words.concat("the run has no samples").join("  ·  ");
+    if (ended) words.push("the run ended at " + seconds(timeOf(run.rows - 1)));
+    words.push("gear " + state.gear_speed.toPrecision(4) + " rad/s", "torque of the contacts " + quantity(state.gear_contact_torque, "N m"),
+      "force of all pairs " + quantity(state.mesh_force, "N"), "gap " + quantity(state.drive_gap, "m", 3) + " (drive), " + quantity(state.coast_gap, "m", 3) + " (coast)",
+      state.pairs_in_contact + (state.pairs_in_contact === 1 ? " pair" : " pairs") + " in contact");
+    return words.join("  ·  ");
+  }
+
+  function draw() {
+    const state = now(), gears = data.gears[run.gears];
+    for (const canvas of [mesh, whole]) canvas.hidden = !state;
+    if (state) { drawMesh(state, gears); drawWhole(state, gears); }
+    plots.forEach(drawCurve);
+    slider.value = frame;
+    slider.setAttribute("aria-valuetext", seconds(timeOf(frame)));
+    readout.textContent = wordsOf(state);
+  }
+
+  function later() {
+    if (waiting) return;
+    waiting = true;
+    requestAnimationFrame(() => { waiting = false; draw(); });
+  }
+
+  function show(index, tell) {
+    frame = Math.max(0, Math.min(data.frames - 1, index));
+    if (tell) document.dispatchEvent(new CustomEvent("gearidae:cursor", { detail: timeOf(frame) }));
+    later();
+  }
+
+  // Another run at the same time.
+  function choose(number) {
+    places = gearidae.placesOf(data, number);
+    take(number);
+    sliders.forEach(({ input, output, dim }, k) => {
+      input.value = places[k];
+      output.textContent = dim.values[places[k]];
+      input.setAttribute("aria-valuetext", output.textContent);
+    });
+    if (showMap) showMap(number, [number]);
+    verdict.replaceChildren();
+    gearidae.chip(verdict, run.look, data.words[number]);
+    stage.style.borderColor = run.look.colour;
+    later();
+  }
+
+  function play() {
+    if (playing !== null) { stop(); return; }
+    const from = frame < data.frames - 1 ? frame : 0, perSecond = Math.max(data.frames / PLAYED, 1);
+    let began = null;
+    button.textContent = "Pause";
+    const step = (time) => {
+      if (began === null) began = time;
+      const index = Math.floor(from + perSecond * (time - began) / 1000);
+      if (index !== frame) show(index, true);
+      if (index >= data.frames - 1) stop(); else playing = requestAnimationFrame(step);
+    };
+    playing = requestAnimationFrame(step);
+  }
+
+  function stop() {
+    if (playing !== null) cancelAnimationFrame(playing);
+    playing = null;
+    button.textContent = "Play";
+  }
+
+  const board = element("div", holder, "", { className: "sliders" });
+  const sliders = data.dims.map((dim, k) => {
+    const label = element("label", board), name = element("span", label, dim.name), output = element("output", label);
+    const input = element("input", label, "", { type: "range", min: 0, max: dim.values.length - 1, step: 1, value: 0 });
+    input.addEventListener("input", () => {
+      places[k] = Number(input.value);
+      choose(gearidae.runAt(data, places));
+    });
+    name.className = "name";
+    return { input, dim, output };
+  });
+  const showMap = data.dims.length ? gearidae.outcomeMap(holder, data, choose) : null;
+  const verdict = element("p", holder, "", { className: "verdict" });
+  verdict.setAttribute("aria-live", "polite");
+  const controls = element("div", holder, "", { className: "controls" });
+  const button = element("button", controls, "Play", { type: "button" });
+  button.addEventListener("click", play);
+  for (const [sign, name, step] of [["−1", "one picture back", -1], ["+1", "one picture on", 1]]) {
+    const single = element("button", controls, sign, { type: "button", title: name });
+    single.setAttribute("aria-label", name);
+    single.addEventListener("click", () => { stop(); show(frame + step, true); });
+  }
+  const slider = element("input", controls, "", { type: "range", min: 0, max: data.frames - 1, step: 1, value: 0 });
+  slider.setAttribute("aria-label", "time");
+  slider.addEventListener("input", () => { stop(); show(Number(slider.value), true); });
+  const readout = element("output", holder);
+  const stage = element("div", holder, "", { className: "stage" });
+  const [left, right] = ["left", "right"].map((name) => element("div", stage, "", { className: name }));
+  const figureOf = (words, name, parent) => {
+    const figure = element("figure", parent, "", { className: name }), canvas = element("canvas", figure);
+    canvas.setAttribute("role", "img");
+    canvas.setAttribute("aria-label", words);
+    return canvas;
+  };
+  const mesh = figureOf("both gears near the pitch point", "near", left);
+  element("figcaption", mesh.parentElement, "Teeth to scale, gaps between them × " + data.gaps + ". Arrow: force of all pairs on the gear; blue pushes, orange pulls.");
+  const plots = [["Speed of the gear", "rad s-1"], ["Torque of the tooth contacts on the gear", "N m"]].map(([label, unit]) => {
+    const canvas = figureOf(label + " over time", "curve", right), title = element("figcaption", canvas.parentElement);
+    const pointed = (event) => {
+      const box = canvas.getBoundingClientRect(), share = (event.clientX - box.left - LEFT) / (box.width - LEFT - RIGHT);
+      stop();
+      show(Math.round(Math.min(1, Math.max(0, share)) * (data.frames - 1)), true);
+    };
+    canvas.addEventListener("pointerdown", (event) => { canvas.setPointerCapture(event.pointerId); pointed(event); });
+    canvas.addEventListener("pointermove", (event) => { if (event.buttons) pointed(event); });
+    return { canvas, title, label, unit };
+  });
+  const whole = figureOf("both gears as a whole", "whole", left);
+  element("figcaption", whole.parentElement, "Whole gears; a dot marks one tooth of each.");
+  const notes = ["The curves have the same axes for all runs."];
+  if (data.every > 1) notes.unshift("One of every " + data.every + " samples is a picture; the curves hold the smallest and largest values between.");
+  element("p", holder, notes.join(" "), { className: "hint" });
+
+  document.addEventListener("gearidae:teeth", (event) => {
+    stop();
+    show(Math.round((event.detail - data.start) / (data.end - data.start || 1) * (data.frames - 1)), false);
+  });
+  whenSeenAnew(draw, later);
+  choose(0);
+  draw();
+})();
