@@ -92,6 +92,9 @@ def test_what_the_report_needs_is_in_the_package():
         ("gearidae.report", "viewer.js"),
         ("gearidae.report", "save.js"),
         ("gearidae.report", "box.js"),
+        ("gearidae.report", "explorer.js"),
+        ("gearidae.report", "map.js"),
+        ("gearidae.report", "mesh.js"),
     ):
         assert (files(package) / name).is_file()
 

@@ -206,7 +206,7 @@ def test_browser_shows_the_teeth(kind, options, request, tmp_path):
     every = pack_teeth(ds)["runs"][0]["every"]
     run = ds.sel(sam_fraction=1.0) if kind == "swept" else ds
     assert seen["first"].startswith("t = 0 s")
-    last = float(ds.time[-1])
+    last = float(ds.time[(ds.sizes["time"] - 1) // every * every])  # the last picture
     for name, time in (("slider", float(ds.time[100 * every])), ("cursor", last)):
         (state,) = tooth_contacts(run, time)
         shown = f"{time * 1e6:#.6g} \N{MICRO SIGN}s" if kind == "specimen" else f"{time * 1e3:#.6g} ms"
@@ -219,7 +219,7 @@ def test_browser_shows_the_teeth(kind, options, request, tmp_path):
     assert counted in seen["slider"]
     if kind == "swept":
         assert "monolayer" not in seen["cursor"]  # one material only
-        assert seen["other run"].startswith("t = 4.00000 ms")
+        assert seen["other run"].startswith(seen["cursor"][:16])
     assert seen["playing"] == "Pause true"
     assert seen["stopped"] == "Play"
     assert seen["--pinion"] == seen["--gear"] == "true"

@@ -32,7 +32,9 @@
     return found;
   }
 
-  const timeOf = (number) => data.start + (data.end - data.start) * Math.min(1, number / Math.max(1, data.frames - 1));
+  // A picture is one of so many samples, and the last sample need not be one.
+  const timeOf = (number) => data.start + (data.end - data.start) * number * data.every / Math.max(1, data.samples - 1);
+  const pictureAt = (share) => Math.round(Math.min(1, Math.max(0, share)) * (data.samples - 1) / data.every);
 
   // Pairs on the path of contact of a flank, by their places [m]: the coast flank mirrors the other, half a pitch later.
   function pairPlaces(gears, flank, travel) {
@@ -272,7 +274,7 @@
     const pointed = (event) => {
       const box = canvas.getBoundingClientRect(), share = (event.clientX - box.left - LEFT) / (box.width - LEFT - RIGHT);
       stop();
-      show(Math.round(Math.min(1, Math.max(0, share)) * (data.frames - 1)), true);
+      show(pictureAt(share), true);
     };
     canvas.addEventListener("pointerdown", (event) => { canvas.setPointerCapture(event.pointerId); pointed(event); });
     canvas.addEventListener("pointermove", (event) => { if (event.buttons) pointed(event); });
@@ -286,7 +288,7 @@
 
   document.addEventListener("gearidae:teeth", (event) => {
     stop();
-    show(Math.round((event.detail - data.start) / (data.end - data.start || 1) * (data.frames - 1)), false);
+    show(pictureAt((event.detail - data.start) / (data.end - data.start || 1)), false);
   });
   whenSeenAnew(draw, later);
   choose(0);

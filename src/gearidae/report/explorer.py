@@ -119,9 +119,9 @@ def pack_explorer(ds: xr.Dataset, most_values: int = MOST_VALUES) -> dict[str, A
     -------
     dict
         What `gearidae.report.outcomes.pack_outcomes` packs, and ``columns`` (`FRAME`), ``every`` (samples a picture),
-        ``gaps`` (how many times their size they are drawn), ``start`` and ``end`` [s], ``gears`` (from
-        `gearidae.report.gears.pack_gears`, each once), ``largest`` force [N], ``ranges`` of the curves, and ``runs``:
-        which gears, ``frames`` and ``curves`` as text from `gearidae.report.html.numbers`.
+        ``gaps`` (how many times their size they are drawn), ``start`` and ``end`` [s], numbers of ``samples`` and
+        ``frames``, ``gears`` (from `gearidae.report.gears.pack_gears`, each once), ``largest`` force [N], ``ranges`` of
+        the curves, and ``runs``: which gears, ``frames`` and ``curves`` as text from `gearidae.report.html.numbers`.
 
     Raises
     ------
@@ -152,6 +152,7 @@ def pack_explorer(ds: xr.Dataset, most_values: int = MOST_VALUES) -> dict[str, A
         "gaps": gaps,
         "start": float(ds["time"][0]),
         "end": float(ds["time"][-1]),
+        "samples": samples,
         "frames": math.ceil(samples / every),
         "gears": gears,
         "largest": max(_largest(frames[:, FRAME.index("mesh_force")]) for _, frames, _ in shown),
