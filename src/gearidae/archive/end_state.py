@@ -20,6 +20,8 @@ from gearidae.records import Words
 
 _LARGEST: Final = 2**26
 """Bytes of a state; those of elastic contacts take up to a megabyte."""
+END_DIGEST: Final = "end_state_name"
+"""Attribute that tells one end from another: the name that runs which go on from there have in ``started_from``."""
 
 
 def packed_state(words: Words) -> str:
@@ -31,7 +33,7 @@ def end_state_attributes(start: float, words: Words | None) -> dict[str, Any]:
     """Attributes of a run's dataset: when it began, if not at 0, and the state in which it ended, if there is one."""
     attributes: dict[str, Any] = {} if start == 0.0 else {"start_time": start}
     if words is not None:
-        attributes["end_state"] = packed_state(words)
+        attributes |= {"end_state": packed_state(words), END_DIGEST: fingerprint(words)}
     return attributes
 
 

@@ -28,6 +28,7 @@ from gearidae.archive.checkpoint import RUN, Checkpoint, drop_checkpoints
 from gearidae.archive.commits import COPIED, COUNTS, LENGTH, RECORDS, Commit, check_bytes
 from gearidae.archive.definition import define
 from gearidae.archive.disk import disk_errors, sync
+from gearidae.archive.integrity import seal, with_checksums
 from gearidae.archive.library import LIBRARY, close, opened
 from gearidae.archive.rows import archived, kinds_in, teeth_in
 from gearidae.records import Block, Rows, Statistics, sample_times
@@ -301,12 +302,13 @@ class GrowingArchive:
         sync(self.path.parent)
 
     def _compact(self, template: xr.Dataset, part: Path) -> None:
-        define(template, part, self.lengths)
+        define(with_checksums(template), part, self.lengths)
         with opened(part, "a") as file:
             file.set_auto_maskandscale(False)
             for name, variable in file.variables.items():
                 if set(variable.dimensions) & {*self.lengths} and variable.size:
                     self._copy(name, variable, len(variable))
+        seal(part)
         sync(part)
 
     def _copy(self, name: str, variable: Any, length: int) -> None:

@@ -18,6 +18,7 @@ import netCDF4
 import xarray as xr
 
 from gearidae.archive.commits import check_bytes
+from gearidae.archive.integrity import check_content, check_seal
 from gearidae.errors import STOPS
 
 _PATIENCE: Final = 5.0
@@ -103,12 +104,15 @@ def close(file: netCDF4.Dataset, *, written: bool) -> None:
 def loaded(path: Path) -> xr.Dataset:
     """Read any netCDF file into memory; a damaged one may make the netCDF stack raise any exception."""
     with uninterrupted():
+        check_seal(path)
         check_bytes(path)
         await_lock(path)
         with netCDF4.Dataset(path) as declared:
             check_size(declared, path)
         with xr.open_dataset(path, decode_times=False) as file:
-            return file.load()
+            ds = file.load()
+    check_content(ds)
+    return ds
 
 
 def check_size(file: netCDF4.Dataset, path: Path) -> None:

@@ -1,7 +1,8 @@
 """Archives on disk: one netCDF4 file that holds a dataset exactly, written whole or not at all.
 
-Numbers along a dimension carry HDF5's Fletcher-32, piece by piece; the file's structure has checksums of its own. What
-cannot be read of a damaged file is named in one line. Archives of older versions are brought to what this one writes.
+Numbers along a dimension carry HDF5's Fletcher-32, piece by piece; the whole file, and what it says in words, have
+checksums too (`gearidae.archive.integrity`). What cannot be read of a damaged file, or has been edited so that it does
+not fit the rest, is named in one line. Archives of older versions are brought to what this one writes.
 """
 
 from __future__ import annotations
@@ -18,10 +19,12 @@ from xarray.backends import BackendArray
 from xarray.backends.netCDF4_ import NetCDF4ArrayWrapper
 from xarray.core.indexing import ExplicitIndexer, LazilyIndexedArray
 
+from gearidae.archive.agreement import disagreement
 from gearidae.archive.attributes import readable_scene, wrong_attribute
 from gearidae.archive.commits import RECORDS, Commit, check_bytes
 from gearidae.archive.definition import CHUNK, chunked, text_storage
 from gearidae.archive.disk import disk_errors
+from gearidae.archive.integrity import check_content, check_seal, seal, with_checksums
 from gearidae.archive.keep import kept_in
 from gearidae.archive.library import await_lock, check_size, uninterrupted
 from gearidae.archive.lock import is_locked
@@ -43,6 +46,10 @@ _JUDGED = ("verdict", "impacts")
 """What archives of runs that kept parts only have had from the first."""
 _LAZY_ABOVE = 128 * 2**20
 """Archives larger than this [bytes in memory] are read piece by piece as they are used."""
+
+
+class OtherFileError(SceneError):
+    """A file of gearidae that is no archive of runs."""
 
 
 @uninterrupted()
@@ -72,7 +79,9 @@ def save(ds: xr.Dataset, path: str | os.PathLike[str], *, overwrite: bool = Fals
         If the target is refused (see `check_target`) or the disk does not take the data.
     """
     with whole_file(path, overwrite=overwrite) as part, disk_errors():
-        ds.drop_encoding().to_netcdf(part, engine="netcdf4", format="NETCDF4", encoding=_encoding(ds))
+        whole = with_checksums(ds).drop_encoding()
+        whole.to_netcdf(part, engine="netcdf4", format="NETCDF4", encoding=_encoding(ds))
+        seal(part)
     return Path(os.path.realpath(path))
 
 
@@ -111,6 +120,10 @@ def open_archive(path: str | os.PathLike[str]) -> xr.Dataset:
         raise SceneError("archive", path, "is not a netCDF4 file")
     running = is_locked(source)  # asked first: a run that ends meanwhile puts another file in its place
     try:
+        check_seal(source)
+    except ValueError as error:
+        raise SceneError("archive", path, f"is damaged: {error}") from None
+    try:
         commits = check_bytes(source)
         ds, commit = _opened(source, commits)
     except SceneError:
@@ -121,19 +134,22 @@ def open_archive(path: str | os.PathLike[str]) -> xr.Dataset:
         raise SceneError("archive", path, f"is damaged or not a netCDF4 file ({error})") from error
     try:
         ds.attrs.pop("checksums", None)  # of version 0.1.0
+        check_content(ds)
         _check_layout(ds, path)
         if is_growing(ds):
             ds = trimmed(ds, source, commit, running=running)
         ds = converted(ds)
-        if ds.nbytes <= _LAZY_ABOVE:
-            ds = in_memory(ds)
+        at_once = ds.nbytes <= _LAZY_ABOVE
+        ds = in_memory(ds) if at_once else ds
+        if wrong := disagreement(ds, times=at_once):
+            raise SceneError("archive", path, f"is damaged: {wrong}")
     except SceneError:
         ds.close()
         raise
     except Exception as error:  # as above: chunks are decoded only now
         ds.close()
         raise SceneError("archive", path, f"is damaged ({error})") from error
-    if ds.nbytes <= _LAZY_ABOVE:
+    if at_once:
         ds.close()
     return ds
 
@@ -190,7 +206,7 @@ def _check_layout(ds: xr.Dataset, path: str | os.PathLike[str]) -> None:
     missing = [name for name in expected if name not in ds.variables]
     if "keep" not in ds.attrs and {*expected} - {*missing} <= {"time"}:  # nothing of a run
         what = f'is no archive of runs but "{ds.attrs.get("title", "of a study")}"'
-        raise SceneError("archive", path, f"{what}: gearidae.open reads it")
+        raise OtherFileError("archive", path, f"{what}: gearidae.open reads it")
     wrong = f"it lacks {', '.join(missing)}" if missing else wrong_attribute(ds)
     if wrong:
         raise SceneError("archive", path, f"is damaged: {wrong}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 from datetime import UTC, datetime
 from functools import cache
@@ -16,6 +17,9 @@ if TYPE_CHECKING:
 
 SCHEMA_VERSION = 1
 """Version of the layout; raised whenever an older reader could misread a newer file."""
+
+SCENE_DIGEST = "scene_sha256"
+"""Attribute that tells whether the scene is still the one that was run."""
 
 _REFERENCES = (
     "M. Teodorescu, S. Theodossiades, H. Rahnejat, Impact dynamics of rough and surface protected MEMS "
@@ -41,6 +45,7 @@ def provenance(scene: Scene, action: str, *, swept: tuple[str, ...] = ()) -> dic
         Attributes that netCDF can hold: strings and numbers. Only ``history`` and ``date_created`` depend on
         the moment of the call.
     """
+    text = json.dumps(scene.to_dict(), allow_nan=False)
     now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
     return {
         "Conventions": "CF-1.11, ACDD-1.3",
@@ -54,10 +59,16 @@ def provenance(scene: Scene, action: str, *, swept: tuple[str, ...] = ()) -> dic
         "date_created": now,
         "product_version": gearidae.__version__,
         "schema_version": SCHEMA_VERSION,
-        "scene": json.dumps(scene.to_dict(), allow_nan=False),
+        "scene": text,
+        SCENE_DIGEST: digest_of(text),
         "rtol": scene.run.rtol,
         "t_end": scene.run.duration,
     }
+
+
+def digest_of(scene: str) -> str:
+    """SHA-256 of a scene as text."""
+    return hashlib.sha256(scene.encode()).hexdigest()
 
 
 def surface_regimes(scene: Scene) -> dict[str, float | str]:

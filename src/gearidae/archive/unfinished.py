@@ -11,7 +11,7 @@ import xarray as xr
 
 from gearidae.archive.checkpoint import RUN, Checkpoint
 from gearidae.archive.commits import COUNTS, RECORDS, Commit, constants_of
-from gearidae.archive.end_state import packed_state
+from gearidae.archive.end_state import end_state_attributes
 from gearidae.archive.totals import total_variables
 from gearidae.records import COUNTERS
 from gearidae.scene import Scene
@@ -89,7 +89,7 @@ def trimmed(ds: xr.Dataset, path: Path, commit: Commit | None, *, running: bool)
     if point is not None:
         cut.attrs |= {
             "message": f"not at its end yet; checkpoint at {point.time:g} s{remedy}",
-            "end_state": packed_state(point.state),
+            **end_state_attributes(0.0, point.state),
             "wall_time": point.wall_time,
             **{
                 counter.name: getattr(point.statistics, counter.name)

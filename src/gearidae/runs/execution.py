@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypedDict, TypeVar
 import xarray as xr
 
 from gearidae.archive import open_archive, save
-from gearidae.archive.provenance import provenance
+from gearidae.archive.provenance import SCENE_DIGEST, provenance
 from gearidae.archive.target import check_target, claims_output
 from gearidae.errors import Interrupted, SceneError
 from gearidae.progress import sweep_progress
@@ -143,7 +143,7 @@ def run_kept(
     work: Callable[[Kept | None], xr.Dataset],
     about: Mapping[str, Any],
     *,
-    read: Callable[[Path], xr.Dataset] = open_archive,
+    read: Callable[[Path], xr.Dataset] | None = None,
     scenes: Sequence[Scene] | None = None,
     so_far: Callable[[], xr.Dataset] = xr.Dataset,
     prepared: Callable[[xr.Dataset], xr.Dataset] | None = None,
@@ -160,7 +160,7 @@ def run_kept(
         What the result depends on: attributes of the dataset. An archive that has others is not resumed; an empty text
         stands for an attribute that is not there.
     read : callable, optional
-        Reads a file that is there, to be resumed.
+        Reads a file that is there, to be resumed; by default as an archive of runs.
     scenes : sequence of Scene, optional
         Of the runs; results of others are warned of, and left where they are. By default all are of this study.
     so_far : callable, optional
@@ -190,7 +190,7 @@ def run_kept(
         store = make_store(target)
         _begin(execution, store, scenes)
         if execution.resume and not store.count() and target.exists():
-            whole = _whole(target, about, execution.driver, read)
+            whole = _whole(target, about, execution.driver, read or open_archive)
             if whole is not None:
                 return whole
 
@@ -296,7 +296,7 @@ def interruptible(
 def origin_of(scene: Scene) -> dict[str, str]:
     """Return the attributes that say of which scene a dataset is, and of which version of the program."""
     attributes = provenance(scene, "")
-    return {"scene": str(attributes["scene"]), "source": str(attributes["source"])}
+    return {name: str(attributes[name]) for name in ("scene", SCENE_DIGEST, "source")}
 
 
 def solutions(

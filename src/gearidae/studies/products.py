@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import xarray as xr
 
 from gearidae.archive import open_archive
+from gearidae.archive.netcdf import OtherFileError
 from gearidae.errors import SceneError
 from gearidae.studies.declared import studies
 
@@ -44,8 +45,20 @@ def open_product(path: str | os.PathLike[str], kind: str | None = None) -> tuple
         except SceneError:
             raise no_archive from None
         if (content := kind_of(ds)) == "runs":
-            raise
-        return ds, content
+            raise (_not_whole(ds, path) if isinstance(no_archive, OtherFileError) else no_archive) from None
+        return studies()[content].undamaged(ds, path), content
+
+
+def _not_whole(ds: xr.Dataset, path: str | os.PathLike[str]) -> SceneError:
+    """Error about the file of a study that has lost variables: of the study of which it has the largest share."""
+    share, nearest, lacking = 0.0, "file", "the variables of any study"
+    for study in studies().values():
+        required = {name for name, column in study.columns.items() if column.required}
+        held = required & {*ds.variables}
+        if len(held) > share * len(required):
+            share, nearest = len(held) / len(required), study.words
+            lacking = ", ".join(sorted(required - held))
+    return SceneError("archive", path, f"is a damaged {nearest}: it lacks {lacking}")
 
 
 def open(path: str | os.PathLike[str]) -> xr.Dataset:  # noqa: A001

@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import xarray as xr
 
+from gearidae.archive.agreement import disagreement
+from gearidae.archive.attributes import readable_scene
 from gearidae.archive.keep import EVERYTHING, OutputSelection
 from gearidae.archive.library import loaded
 from gearidae.errors import SceneError
@@ -210,10 +212,33 @@ class Study:
         """
         ds = self.read(path)
         try:
-            return self.require(ds)
+            self.require(ds)
         except SceneError as error:
             other = "; gearidae.open reads it as what it is" if "scene" in ds.attrs else ""
             raise SceneError(self._file, path, f"{error.allowed}{other}") from None
+        return self.undamaged(ds, path)
+
+    def undamaged(self, ds: xr.Dataset, path: str | os.PathLike[str]) -> xr.Dataset:
+        """Return what has been read from a file of this study.
+
+        Raises
+        ------
+        SceneError
+            If it has lost its scene, or its parts do not fit together.
+        """
+        if readable_scene(ds.attrs.get("scene")) is None:
+            wrong = f"its scene is {'not readable' if 'scene' in ds.attrs else 'missing'}"
+        else:
+            wrong = disagreement(ds, runs=False)
+        for name, column in self.columns.items():
+            units = column.units if "{" not in column.units else ""  # the scene says which
+            if units and name in ds and ds[name].attrs.get("units", units) != units:
+                wrong = (
+                    wrong or f"its variable {name} is in {ds[name].attrs['units']}, and must be in {units}"
+                )
+        if wrong:
+            raise SceneError(self._file, path, f"is damaged: {wrong}")
+        return ds
 
     def read(self, path: str | os.PathLike[str]) -> xr.Dataset:
         """Read a netCDF file, whatever is in it; errors say that it is no file of this study."""
