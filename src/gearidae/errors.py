@@ -42,6 +42,10 @@ class SceneError(GearidaeError, ValueError):
         return type(self), (self.key, self.value, self.allowed)
 
 
+class DiskFullError(SceneError):
+    """A file could not be written, for want of room; nothing is wrong with the input."""
+
+
 class SolverError(GearidaeError, RuntimeError):
     """The integration could not go on; what had been computed until then is kept.
 

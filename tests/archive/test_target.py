@@ -6,6 +6,7 @@ import json
 import os
 import socket
 import stat
+import sys
 import threading
 from pathlib import Path
 
@@ -18,6 +19,7 @@ import gearidae as gd
 from gearidae.archive import check_target, save, target, to_dataset
 from gearidae.archive.lock import WriterLock, is_locked
 from gearidae.cli import main
+from gearidae.errors import DiskFullError
 from gearidae.report import write_report
 from gearidae.runs.run_cache import folder_beside
 from reference.small_studies import STUDIES
@@ -255,10 +257,42 @@ def test_of_a_full_disk_no_piece_of_a_file_is_left(command, single, tmp_path, mo
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(target, "sync", full)
-    assert main(command) == 2
-    assert capfd.readouterr().err.endswith("could not be written (No space left on device)\n")
+    assert main(command) == 3
+    assert capfd.readouterr().err.endswith(
+        "could not be written (No space left on device): free some space\n"
+    )
     assert sorted(tmp_path.iterdir()) == before
     monkeypatch.undo()
     monkeypatch.chdir(tmp_path)
     assert main(command) == 0
     assert len(list(tmp_path.iterdir())) == len(before) + 1
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no limit of a file's size")
+@pytest.mark.parametrize("name", ["convergence", "ensemble", "hub_life"])
+def test_a_study_without_room_for_its_file_says_so(name, tmp_path):
+    """As the system refuses it to netCDF's library, which calls it otherwise; nothing of the file is left."""
+    import resource
+
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (3000, before[1]))
+    try:
+        with (
+            pytest.warns(UserWarning, match="cannot be kept"),
+            pytest.raises(DiskFullError, match="File too large"),
+        ):
+            STUDIES[name](tmp_path / "out.nc", jobs=1)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert [path.name for path in tmp_path.iterdir()] in ([], ["out.nc.runs"])
+
+
+def test_a_library_that_calls_a_full_disk_otherwise(single, tmp_path, monkeypatch):
+    def refuse(self, target, **options):
+        Path(target).touch()
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(xr.Dataset, "to_netcdf", refuse)
+    with pytest.raises(gd.SceneError, match=r"could not be written \(Permission denied\)") as caught:
+        save(single, tmp_path / "run.nc")
+    assert not isinstance(caught.value, DiskFullError)  # there is room

@@ -1,6 +1,7 @@
 """Rows of runs without an archive: the same in memory and in temporary files, whatever happens to these."""
 
 import logging
+import sys
 
 import numpy as np
 import pytest
@@ -41,8 +42,8 @@ def test_rows_that_cannot_be_written_stay_in_memory(monkeypatch, caplog):
     opened, written = collecting.tempfile.TemporaryFile, []
 
     class Full:
-        def __init__(self):
-            self._file = opened()
+        def __init__(self, buffering):
+            self._file = opened(buffering=buffering)
 
         def __getattr__(self, name):
             return getattr(self._file, name)
@@ -61,6 +62,22 @@ def test_rows_that_cannot_be_written_stay_in_memory(monkeypatch, caplog):
     assert (
         "events stay in memory: a temporary file cannot be written (No space left on device)" in caplog.text
     )
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no limit of a file's size")
+def test_rows_stay_whole_where_a_file_may_not_grow(caplog):
+    """As the system refuses it: what is left in a file's buffer would be an error when the rows are read."""
+    import resource
+
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, before[1]))
+    try:
+        with caplog.at_level(logging.WARNING):
+            rows = collected(100)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert_whole(rows)
+    assert "events stay in memory" in caplog.text
 
 
 def test_no_rows():

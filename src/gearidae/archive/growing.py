@@ -98,17 +98,17 @@ class GrowingArchive:
             If the disk does not take it; nothing is left behind then.
         """
         part = _part(path)
-        with disk_errors():
-            try:
+        try:
+            with disk_errors(part):
                 _lay_out(part, template, secrets.token_hex(16), {"time": samples, **ROOM})
                 _write_times(part, samples, float(template.attrs.get("start_time", 0.0)), duration)
                 with opened(part, "a") as file:
                     Commit.first(file, part).write(file)
                 drop_checkpoints(path)
                 part.replace(path)
-            finally:
-                part.unlink(missing_ok=True)
-            sync(path.parent)
+                sync(path.parent)
+        finally:
+            part.unlink(missing_ok=True)
         return cls(path, template)
 
     def __enter__(self) -> Self:
@@ -208,16 +208,16 @@ class GrowingArchive:
             If the disk does not take it; the growing archive then stays as it is.
         """
         part = _part(self.path)
-        with disk_errors():
-            part.unlink(missing_ok=True)
-            try:
+        part.unlink(missing_ok=True)
+        try:
+            with disk_errors(part):
                 self._compact(template, part)
                 self.close()  # Windows replaces no file that is open
                 part.replace(self.path)
-            finally:
-                part.unlink(missing_ok=True)
-            sync(self.path.parent)
-            drop_checkpoints(self.path)
+                sync(self.path.parent)
+                drop_checkpoints(self.path)
+        finally:
+            part.unlink(missing_ok=True)
 
     def _open(self) -> None:
         with LIBRARY:

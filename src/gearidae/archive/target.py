@@ -10,9 +10,9 @@ from contextvars import ContextVar
 from pathlib import Path
 from typing import Final
 
-from gearidae.archive.disk import DiskError, part_beside, sync
+from gearidae.archive.disk import DiskError, no_room, part_beside, sync
 from gearidae.archive.lock import claimed
-from gearidae.errors import SceneError
+from gearidae.errors import DiskFullError, SceneError
 
 _USUAL_LONGEST: Final = 255
 """Bytes of a file's name, where the system does not say."""
@@ -191,7 +191,8 @@ def whole_file(
     Raises
     ------
     SceneError
-        As `claims_target` does, unless a study of this thread has claimed the file; if the disk does not take the data.
+        As `claims_target` does, unless a study of this thread has claimed the file; if the disk does not take the data,
+        a `DiskFullError` if it has no room for them.
     """
     target = check_target(path, overwrite=overwrite, name=name, remedy=remedy)
     is_claimed = target in _CLAIMED.get()
@@ -203,6 +204,8 @@ def whole_file(
             part.replace(target)
             sync(target.parent)
         except (DiskError, OSError) as error:
+            if full := no_room(error, part):
+                raise DiskFullError(name, path, f"could not be written ({full}): free some space") from error
             reason = getattr(error, "strerror", None) or error
             raise SceneError(name, path, f"could not be written ({reason})") from error
         finally:

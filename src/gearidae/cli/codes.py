@@ -6,7 +6,7 @@ DONE = 0
 BAD_INPUT = 2
 """The command line, a case file or an archive is wrong; nothing was written."""
 UNFINISHED = 3
-"""The solver failed; the results up to then are kept."""
+"""The solver failed, or the disk is full; the results up to then are kept."""
 INTERRUPTED = 130
 """Ctrl-C; the results up to then are kept."""
 TERMINATED = 143

@@ -16,7 +16,7 @@ from gearidae.cli.interrupts import ENDINGS, interrupts_kept, stopped_by
 from gearidae.cli.output import print_error
 from gearidae.cli.session import app
 from gearidae.cli.streams import stop_output
-from gearidae.errors import GearidaeError, SceneError
+from gearidae.errors import DiskFullError, GearidaeError, SceneError
 
 _TAKES_PAIRS = ("--set", "--over", "--vary", "--seen", "--select", "--line")
 
@@ -36,6 +36,8 @@ def _run(tokens: Sequence[str]) -> int:
         code = app.meta(tokens, exit_on_error=False, print_error=False, result_action="return_value")
     except CycloptsError as error:
         return _failed(f"{' '.join(str(error).split())} (see gearidae --help)", BAD_INPUT)
+    except DiskFullError as error:
+        return _failed(str(error), UNFINISHED)
     except SceneError as error:
         return _failed(str(error), BAD_INPUT)
     except GearidaeError as error:

@@ -47,12 +47,14 @@ class Collector:
         """Move what is in memory to the files; where they cannot be written, rows stay in memory from there on."""
         try:
             if not self._files:
-                self._files = {name: tempfile.TemporaryFile() for name in self._parts}  # noqa: SIM115
+                # without a buffer, whose rest a full disk would refuse once more when the file is read or closed
+                self._files = {name: tempfile.TemporaryFile(buffering=0) for name in self._parts}  # noqa: SIM115
                 logger.info("many %ss: they are held in a temporary file", self._kind.dim)
             for name, parts in self._parts.items():
                 column = self._joined(name, parts)
-                self._files[name].write(column.tobytes())
-                self._files[name].flush()
+                content = memoryview(column.tobytes())
+                while content:  # what there is room for is written without an error
+                    content = content[self._files[name].write(content) :]
                 self._written[name] += len(column)
                 parts.clear()
             self._held = 0

@@ -11,6 +11,7 @@ from gearidae.archive.select import scene_of
 from gearidae.errors import SceneError
 from gearidae.records import ROWS
 from gearidae.scene.differences import first_difference
+from gearidae.scene.group import did_you_mean, shorten
 from gearidae.testing.comparison import compare
 
 _SHOWN = 12
@@ -45,8 +46,8 @@ def assert_runs_close(
         Names each variable that the run lacks or has in another unit, each that differs by more, by how much, and
         where; and the first key in which the scenes differ.
     SceneError
-        If the datasets cannot be compared, a tolerance is negative or NaN, or `per` names a variable that they do not
-        have.
+        If the datasets cannot be compared, a tolerance is negative or NaN, `per` names a variable that they do not
+        have, or `ignore` one that the reference does not have.
     """
     per = dict(per or {})
     for name, tolerance in {"rtol": rtol, **per}.items():
@@ -54,10 +55,16 @@ def assert_runs_close(
             raise SceneError(
                 "rtol" if name == "rtol" else f"per[{name!r}]", tolerance, "must be a number from 0 on"
             )
-    table = compare(a, b)
+    _check_ignored(b, ignore)
+    lines = list(_lacking(a, b, set(ignore)))
+    try:
+        table = compare(a, b)
+    except SceneError as error:
+        if not lines:
+            raise
+        raise AssertionError("\n".join(["runs cannot be compared:", *lines[:_SHOWN], f"  {error}"])) from None
     if unknown := [name for name in per if name not in table.index]:
         raise SceneError("per", unknown[0], f"must be one of {', '.join(sorted(table.index))}")
-    lines = list(_lacking(a, b, set(ignore)))
     for name, row in table.iterrows():
         allowed = per.get(str(name), rtol)
         if not row["relative"] <= allowed:
@@ -68,15 +75,26 @@ def assert_runs_close(
     raise AssertionError("\n".join([_heading(a, b, len(lines), len(table)), *lines[:_SHOWN], *more]))
 
 
+def _check_ignored(reference: xr.Dataset, ignore: Sequence[str]) -> None:
+    known = [*map(str, reference.variables), *(f"{rows.dim}s" for rows in ROWS)]
+    for name in [ignore] if isinstance(ignore, str) else ignore:
+        if name not in known:
+            meant = did_you_mean(str(name), known)
+            allowed = "is nothing that the reference has" + (f"; {meant}" if meant else "")
+            raise SceneError("ignore", shorten(name), allowed)
+
+
 def _lacking(run: xr.Dataset, reference: xr.Dataset, ignore: set[str]) -> Iterator[str]:
     """Say what of a reference a run lacks, or has in another unit."""
-    rows = {rows.dim: f"{rows.dim}s" for rows in ROWS}
-    for dim, many in rows.items():
+    left_out = set()
+    for dim, many in ((rows.dim, f"{rows.dim}s") for rows in ROWS):
         there = reference.sizes.get(dim, 0)
         if there and not run.sizes.get(dim, 0) and many not in ignore:
             yield f"  {many}: the run has none, the reference has {there}"
-    for name, variable in reference.data_vars.items():
-        if name in ignore or set(rows) & set(variable.dims):
+        if not there or not run.sizes.get(dim, 0) or many in ignore:
+            left_out.add(dim)
+    for name, variable in reference.variables.items():
+        if name in ignore or left_out & set(variable.dims):
             continue
         if name not in run.variables:
             yield f"  {name}: the run lacks it"

@@ -25,6 +25,9 @@ _LEFT_OUT: Final = {*RUN, *OF_SWEPT_RUN, *EVENTS, "residual", "residual_bound"}
 """Effort and errors of a run, which say nothing of its motion; events are compared as a sequence."""
 _WHICH: Final = ("pair", "flank", "tooth", "sam_fraction")
 """What says which passage it is."""
+_EVENT: Final = ("event_time", "event_kind", "event_pair", "event_flank")
+_PASSAGE: Final = ("passage_time", "passage_pair", "passage_flank")
+"""What rows must have to be compared one by one."""
 _EXCHANGED: Final = ("stored_change", "kinetic_change", "radius_work", "model_change")
 """Energies of either sign, which may cancel: their scale is that of all that has been exchanged."""
 
@@ -139,9 +142,9 @@ def _differences(a: xr.Dataset, b: xr.Dataset) -> Iterator[tuple[str, Difference
             continue
         if variable.dtype.kind in "fiu" and variable.dims == b[name].dims:
             yield name, _of_samples(variable, b[name])
-    if "event_time" in a and "event_time" in b:
+    if all(name in run for run in (a, b) for name in _EVENT):
         yield "events", _of_events(a, b)
-    if "passage_time" in a and "passage_time" in b:
+    if all(name in run for run in (a, b) for name in _PASSAGE):
         yield from _of_passages(a, b, scales)
 
 
