@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from gearidae.compiled.cache import COMPILED_PACKAGES
+
 SOURCE = Path(__file__).parents[1] / "src" / "gearidae"
 USES = (
     "surfaces",
@@ -81,6 +83,53 @@ def test_no_arrow_between_packages_of_the_engine_runs_back():
     assert both_ways == []
     order = list(TopologicalSorter(imports).static_order())
     assert order.index("model") < order.index("motion") < order.index("setup") < order.index("integrate")
+
+
+def compiled_functions(tree):
+    """Functions of a file that are declared to be compiled, and those that they contain."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.FunctionDef):
+            names = {ast.unparse(mark).partition("(")[0] for mark in node.decorator_list}
+            if names & {"compiled", "compiled_once", "compiled_callback"}:
+                yield node
+
+
+def outside_the_hash(folder, package, inside):
+    """Files with compiled functions, and files whose names compiled functions use, that are not in the hash."""
+    files = {
+        path.relative_to(folder).as_posix(): ast.parse(path.read_text()) for path in folder.rglob("*.py")
+    }
+    wanted = {file for file, tree in files.items() if any(True for _ in compiled_functions(tree))}
+    for file in tuple(wanted):
+        used = {
+            name.id
+            for function in compiled_functions(files[file])
+            for statement in function.body
+            for name in ast.walk(statement)
+            if isinstance(name, ast.Name)
+        }
+        for node in ast.walk(files[file]):
+            if isinstance(node, ast.ImportFrom) and node.module and node.module.startswith(f"{package}."):
+                place = node.module.removeprefix(f"{package}.").replace(".", "/")
+                if any((alias.asname or alias.name) in used for alias in node.names):
+                    wanted.add(f"{place}.py" if f"{place}.py" in files else f"{place}/__init__.py")
+    return sorted(file for file in wanted if not file.startswith(tuple(inside)))
+
+
+def test_all_that_is_compiled_is_in_the_hash_that_names_its_folder():
+    """A file that were left out would run as it was before its last edit, without a word."""
+    assert outside_the_hash(SOURCE, "gearidae", COMPILED_PACKAGES) == []
+    without = [package for package in COMPILED_PACKAGES if package != "laws"]
+    assert "laws/shaft/drag.py" in outside_the_hash(SOURCE, "gearidae", without)
+
+
+def test_a_constant_of_compiled_code_from_elsewhere_would_be_found(tmp_path):
+    (tmp_path / "limits.py").write_text("MOST = 3")
+    (tmp_path / "words.py").write_text("TEXT = 'a'")
+    (tmp_path / "laws.py").write_text(
+        "from p.limits import MOST\nfrom p.words import TEXT\n@compiled(inline=True)\ndef f(x):\n    return x + MOST"
+    )
+    assert outside_the_hash(tmp_path, "p", ("laws",)) == ["limits.py"]
 
 
 def test_no_two_packages_import_each_other():

@@ -15,7 +15,7 @@ import gearidae as gd
 
 ds = gd.open_archive(sys.argv[1])
 assert ds.sizes["time"] == 20_001
-heavy = ("numba", "llvmlite", "sksundae", "gearidae.engine", "gearidae.contact.kernels", "gearidae.compiled")
+heavy = ("numba", "llvmlite", "sksundae", "gearidae.engine", "gearidae.contact.kernels", "gearidae.compiled.cache")
 for use in sys.argv[2:]:
     exec(use)
     print(*sorted(name for name in sys.modules if any(name == one or name.startswith(one + ".") for one in heavy)))
@@ -32,6 +32,7 @@ LIGHT = {
     "accessor": "ds.gearidae.scene; ds.gearidae.verdicts(); ds.gearidae.to_dataframe(); ds.gearidae.events()",
     "chain": "gd.concat([ds.isel(event=slice(0))], 'time')",
     "checkpoints": "from gearidae.archive import GrowingArchive",
+    "laws": "from gearidae.laws.shafts import SHAFT_LAWS, driving_force; assert SHAFT_LAWS[0].name == 'constant'",
 }
 
 

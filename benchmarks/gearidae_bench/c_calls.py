@@ -12,10 +12,10 @@ import numpy as np
 from numba import carray, types  # type: ignore[attr-defined]
 from numpy.typing import NDArray
 
+from gearidae.engine import adams
 from gearidae.engine.events.events import guard
 from gearidae.engine.events.record import EVENT_NUMBERS
 from gearidae.engine.events.stops import next_stop
-from gearidae.engine.formulas import adams
 from gearidae.engine.integrate.accepted_step import finish_step, has_room, prepare_restart
 from gearidae.engine.integrate.driver import BLOCK_EVENTS, BLOCK_PASSAGES, Output
 from gearidae.engine.integrate.native import restart, state_for_sample

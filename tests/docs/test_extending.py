@@ -213,24 +213,21 @@ VISCOUS_LOSS = """
 import numpy as np
 from types import SimpleNamespace
 from gearidae.archive.variables import ENERGY_BALANCE
-from gearidae.engine.observers import balance
 from gearidae.engine.model.state import STATE
+from gearidae.formulas.quadrature import Ends
+from gearidae.laws.shafts import book_losses
 from gearidae.records.energy import (ENERGY_SUMS, LOSSES)
 from gearidae.records.quantity import in_si
 
 assert "viscous_loss" in LOSSES
 assert ENERGY_BALANCE["viscous_loss"].units == "J"
 scene = SimpleNamespace(
-    phase_rate=1.0, drag=0.0, viscous=3.0, damping=0.0, film_damping=0.0,
+    torque=[SimpleNamespace(drag=0.0, viscous=3.0)] * 2,
     force_unit=5.0, length_unit=7.0, time_unit=1.0, gear_radius=1.0
 )
-energy = np.zeros(1, STATE["energy"])[0]
-state, work = SimpleNamespace(energy=energy), SimpleNamespace(resistance=SimpleNamespace())
-m = SimpleNamespace(scene=scene, state=state, work=work)
-y, yp, time = np.array([0.0, 0.0, 0.0, 2.0]), np.zeros(4), 0.25
-balance._note_resistance(m, 0.0, 0.0, y, yp)
-y[2] = 2.0 * time
-balance._accumulate_losses(m, time, y, yp)
+energy, time = np.zeros(1, STATE["energy"])[0], 0.25
+m = SimpleNamespace(scene=scene, state=SimpleNamespace(energy=energy))
+assert book_losses(m, 1, time, 2.0 * time, Ends(2.0, 0.0, 2.0, 0.0)) == 3.0 * 2.0**2 * time
 numbers = in_si(ENERGY_SUMS, energy, scene)
 np.testing.assert_allclose(numbers["viscous_loss"], 3.0 * 2.0**2 * time * 5.0 * 7.0)
 assert numbers["drag_loss"] == 0.0
@@ -240,7 +237,7 @@ assert numbers["drag_loss"] == 0.0
 CHANGES = (
     ("PITCH_POINT|coast_phase", {"records/events.py", "engine/events/mesh_marks.py"}, PITCH_POINT),
     ("drive_power", {"records/columns.py", "engine/motion/observe.py"}, DRIVE_POWER),
-    ("viscous_loss", {"records/energy.py", "engine/observers/balance.py"}, VISCOUS_LOSS),
+    ("viscous_loss", {"records/energy.py", "laws/shaft/drag.py"}, VISCOUS_LOSS),
 )
 
 

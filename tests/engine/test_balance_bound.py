@@ -7,8 +7,8 @@ import pytest
 
 import gearidae as gd
 from gearidae.engine import solve
-from gearidae.engine.formulas.quadrature import Ends, integral_of_cube, integral_of_square
 from gearidae.engine.setup.build import make_problem
+from gearidae.formulas.quadrature import Ends, integral_of_cube, integral_of_square
 from gearidae.records import (
     GEAR_BOUND,
     QUADRATURE_BOUND,

@@ -255,7 +255,9 @@ def test_a_driver_is_ready_that_is_loaded_after_the_problem_has_been_made(backen
     assert done.returncode == 0, done.stderr
 
 
-def test_a_numba_that_compiles_nothing_gets_the_function_itself(monkeypatch):
+def test_a_numba_that_compiles_nothing_calls_the_function_itself(monkeypatch):
     monkeypatch.setattr(numba.config, "DISABLE_JIT", True)
-    plain = importlib.import_module("gearidae.compiled.once").compiled_once("tests")(late.py_func)
-    assert plain is late.py_func
+    once = importlib.import_module("gearidae.compiled.once")
+    asked = once.compiled_once("never made ready")(lambda number: (number, numba.config.DISABLE_JIT))
+    assert asked(3.0) == (3.0, True)
+    assert not is_ready("never made ready")

@@ -16,7 +16,7 @@ from gearidae.engine.model.record_types import HELD_GEAR
 from gearidae.engine.model.state import LOAD, U
 from gearidae.engine.motion.shafts import forces_at_shafts
 from gearidae.engine.setup.build import make_problem
-from gearidae.engine.torques.harmonic import common_period
+from gearidae.laws.shaft.harmonic import common_period
 from gearidae.records import EventKind
 from reference import train
 from reference.own_pair import OWN_PAIR

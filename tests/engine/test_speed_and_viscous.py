@@ -13,6 +13,7 @@ from gearidae.engine import solve
 from gearidae.engine.integrate.correction import correct
 from gearidae.engine.motion.residual import jacobian, residual
 from gearidae.engine.setup.build import make_problem
+from gearidae.laws.law import DRIVE
 from gearidae.records import EventKind
 
 R1, R2 = 34.715e-6, 4 * 34.715e-6
@@ -142,7 +143,7 @@ def test_newtons_correction_solves_the_linear_equations(touching):
     residual(m, 0.0, y, yp, rest)
     omega_sq = correct(m, 0.0, cj, y, yp, delta)
     np.testing.assert_allclose(delta, np.linalg.solve(matrix.reshape(4, 4).T, -rest), rtol=1e-9)
-    gain = m.scene.pinion_inverse_mass * m.scene.speed_gain
+    gain = m.scene.pinion_inverse_mass * m.scene.torque[DRIVE].speed_gain
     assert omega_sq >= (2 * gain) ** 2 > 0
 
 

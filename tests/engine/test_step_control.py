@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 
-from gearidae.engine.formulas import adams
+from gearidae.engine import adams
 from gearidae.engine.integrate import step_control as control
 from gearidae.engine.model.state import SCENE, W, blank_model
 

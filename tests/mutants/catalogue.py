@@ -182,9 +182,9 @@ MUTANTS = (
     ),
     Mutant(
         "drag proportional to the speed",
-        "engine/motion/shafts.py",
-        "return m.scene.drag * w * abs(w)",
-        "return m.scene.drag * w",
+        "laws/shaft/drag.py",
+        "value -= m.scene.torque[shaft].drag * speed * abs(speed)",
+        "value -= m.scene.torque[shaft].drag * speed",
         ("engine/test_closed_forms.py",),
     ),
     Mutant(
@@ -203,7 +203,7 @@ MUTANTS = (
     ),
     Mutant(
         "phase of a harmonic torque left out",
-        "engine/torques/harmonic.py",
+        "laws/shaft/harmonic.py",
         "* math.cos(m.tables[k + 1] * x + m.tables[k + 2])\n        k += 3\n    return value\n",
         "* math.cos(m.tables[k + 1] * x)\n        k += 3\n    return value\n",
         SHAFTS,
@@ -224,14 +224,14 @@ MUTANTS = (
     ),
     Mutant(
         "Adams formulas with too short lengths of the steps before the last",
-        "engine/formulas/adams.py",
+        "engine/adams.py",
         "a.time_lags[i] = a.time_lags[i - 1] + step",
         "a.time_lags[i] = a.time_lags[i - 1] + 0.99 * step",
         ("engine/test_adams.py",),
     ),
     Mutant(
         "states between the steps from a formula of one order less",
-        "engine/formulas/adams.py",
+        "engine/adams.py",
         "count = a.order_used + 1",
         "count = a.order_used",
         ("engine/test_adams.py",),
@@ -322,14 +322,14 @@ MUTANTS = (
     ),
     Mutant(
         "drag's loss without the square of the speed's deviation",
-        "engine/formulas/quadrature.py",
+        "formulas/quadrature.py",
         "(3.0 * mean + b) * b * b",
         "b * b * b",
         ("engine/test_energy_balance.py",),
     ),
     Mutant(
         "a speed in the middle of a step for which the rates count half",
-        "engine/formulas/quadrature.py",
+        "formulas/quadrature.py",
         "0.5 * h * rates",
         "0.25 * h * rates",
         ("engine/test_energy_balance.py::test_drag_knows_the_mean_speed",),

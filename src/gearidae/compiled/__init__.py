@@ -6,41 +6,28 @@ options of numba's that are not documented are used where it takes them, see `op
 
 What a compiled function calls is compiled into it again, and with it into all its callers. A function that is called
 rarely can be declared as `compiled_once` instead, see `once`.
+
+A function is declared to numba when it is first used, and the names of this package that need numba are loaded on
+first use: who reads the declarations of a law imports a module of compiled functions without numba.
 """
 
-import os
+from __future__ import annotations
 
-from gearidae.errors import SceneError
+from typing import TYPE_CHECKING
 
-try:
-    import numba  # noqa: F401  # here first: it reads the user's settings when it is imported
-except ImportError:
-    raise
-except Exception as error:
-    settings = ", ".join(
-        f"{name}={os.environ[name]}" for name in sorted(os.environ) if name.startswith("NUMBA_")
-    )
-    raise SceneError(
-        "environment", settings, f"with these settings numba cannot be loaded: {error}"
-    ) from error
+from gearidae.lazy import lazy_names
 
-from gearidae.compiled.cache import cache_folder, is_cached
-from gearidae.compiled.functions import Function, compiled, compiled_callback
-from gearidae.compiled.kinds import name_type
-from gearidae.compiled.once import compiled_once
-from gearidae.compiled.options import compiles, numba_options
-from gearidae.compiled.ready import is_ready, make_ready
+if TYPE_CHECKING:
+    from gearidae.compiled.cache import cache_folder as cache_folder
+    from gearidae.compiled.cache import is_cached as is_cached
+    from gearidae.compiled.functions import Function as Function
+    from gearidae.compiled.functions import compiled as compiled
+    from gearidae.compiled.functions import compiled_callback as compiled_callback
+    from gearidae.compiled.kinds import name_type as name_type
+    from gearidae.compiled.once import compiled_once as compiled_once
+    from gearidae.compiled.options import compiles as compiles
+    from gearidae.compiled.options import numba_options as numba_options
+    from gearidae.compiled.ready import is_ready as is_ready
+    from gearidae.compiled.ready import make_ready as make_ready
 
-__all__ = [
-    "Function",
-    "cache_folder",
-    "compiled",
-    "compiled_callback",
-    "compiled_once",
-    "compiles",
-    "is_cached",
-    "is_ready",
-    "make_ready",
-    "name_type",
-    "numba_options",
-]
+__getattr__, __dir__, __all__ = lazy_names(__name__)

@@ -19,14 +19,35 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
-import numba
-from llvmlite import binding
-from numba.core import caching
 from platformdirs import user_cache_path
+
+from gearidae.errors import SceneError
+
+try:
+    import numba as numba  # before anything else of this package needs it: it reads the user's settings
+    from llvmlite import binding
+    from numba.core import caching
+except ImportError:
+    raise
+except Exception as error:
+    settings = ", ".join(
+        f"{name}={os.environ[name]}" for name in sorted(os.environ) if name.startswith("NUMBA_")
+    )
+    raise SceneError(
+        "environment", settings, f"with these settings numba cannot be loaded: {error}"
+    ) from error
 
 log = logging.getLogger(__name__)
 
-COMPILED_PACKAGES: Final = ("asperities/ranges.py", "compiled", "contact", "engine", "records")
+COMPILED_PACKAGES: Final = (
+    "asperities/ranges.py",
+    "compiled",
+    "contact",
+    "engine",
+    "formulas",
+    "laws",
+    "records",
+)
 PLAIN: Final = "GEARIDAE_PLAIN_NUMBA"
 """Environment variable that makes gearidae do without numba's undocumented options."""
 

@@ -6,9 +6,11 @@ import hashlib
 from collections.abc import Callable
 from typing import Any, Final, get_args, get_origin, get_type_hints
 
-import numba
 import numpy as np
-from numba import types
+
+from gearidae.compiled.cache import numba
+
+types: Any = numba.types
 
 _KINDS: Final[dict[Any, Any]] = {
     bool: types.boolean,
@@ -20,6 +22,8 @@ _KINDS: Final[dict[Any, Any]] = {
 
 _named: set[Any] = set()
 """Types that have been given a name, which numba keeps for as long as somebody else does."""
+_names: Final[dict[str, type]] = {}
+"""What annotations may name without importing it: a law stands below the records that it is handed."""
 
 
 def name_type(value: Any, name: str) -> None:
@@ -40,6 +44,7 @@ def name_type(value: Any, name: str) -> None:
         _named.add(kind)
         kind.name = f"{name}_{hashlib.sha256(kind.name.encode()).hexdigest()[:12]}"
     _KINDS[type(value)] = kind
+    _names[type(value).__name__] = type(value)
 
 
 def signature_of(function: Callable[..., Any]) -> Any:
@@ -53,7 +58,7 @@ def signature_of(function: Callable[..., Any]) -> Any:
     TypeError
         If they name anything else.
     """
-    hints = get_type_hints(function)
+    hints = get_type_hints(function, localns=_names)
     answer = hints.pop("return")
     if _is_array(answer):
         raise TypeError(f"{function.__qualname__}: what it returns must not be an array")
@@ -82,5 +87,5 @@ def _kind(function: Callable[..., Any], annotation: Any) -> Any:
     if get_origin(annotation) is np.ndarray:
         return types.float64[::1]
     if get_origin(annotation) is tuple:
-        return types.Tuple([_kind(function, part) for part in get_args(annotation)])  # type: ignore[no-untyped-call]
+        return types.Tuple([_kind(function, part) for part in get_args(annotation)])
     raise TypeError(f"{function.__qualname__}: {annotation} in its annotations has no type of numba's")

@@ -18,21 +18,23 @@ from collections.abc import Callable
 from functools import cached_property, update_wrapper
 from typing import Any, Final, TypeVar, cast
 
-import numba
-from llvmlite import binding, ir
-from numba import types
-from numba.extending import lower_builtin, type_callable
-
-from gearidae.compiled.cache import is_cached, own_cache
 from gearidae.compiled.functions import Function, compiled
-from gearidae.compiled.kinds import signature_of
-from gearidae.compiled.options import numba_options
 from gearidae.compiled.ready import make_ready, wait
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 _slots: Final[list[ctypes.c_int64]] = []
 """All there have ever been: compiled code may look at them for as long as the process lives."""
+_unnamed: Final[list[tuple[str, int]]] = []
+"""Symbols of functions, and addresses of their slots, that have come since `name_slots` was last called."""
+
+
+def name_slots() -> None:
+    """Make all slots known by their symbols, before code is loaded in which they stand."""
+    from llvmlite import binding
+
+    while _unnamed:
+        binding.add_symbol(*_unnamed.pop())
 
 
 class AddressedFunction:
@@ -46,20 +48,27 @@ class AddressedFunction:
         self._symbol = f"{self.py_func.__module__}.{self.py_func.__qualname__}.slot"
         self._code: Any = None
         _slots.append(self._slot)
-        binding.add_symbol(self._symbol, ctypes.addressof(self._slot))
-        type_callable(self)(self._typing)
-        any_number: Any = types.VarArg(types.Any)  # type: ignore[no-untyped-call]
-        write: Any = lower_builtin(self, any_number)  # type: ignore[no-untyped-call]
-        write(self._call)
+        _unnamed.append((self._symbol, ctypes.addressof(self._slot)))
         wait(part, self)
 
     def __call__(self, *arguments: Any) -> Any:
         """Call it from Python."""
-        make_ready(self._part)
+        from gearidae.compiled.options import compiles
+
+        if compiles():
+            make_ready(self._part)
         return self._form(*arguments)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Say where it stands, as `Function` does."""
+        return self._form.__reduce__()
 
     def make_ready(self) -> None:
         """Compile it, or take it from the cache, and fill its slot."""
+        from gearidae.compiled.cache import is_cached, numba, own_cache
+        from gearidae.compiled.options import numba_options
+
+        name_slots()
         options: Any = {"_nrt": self._makes_arrays} if "_nrt" in numba_options() else {}
         with own_cache((), "once"):
             declare = numba.cfunc(self._signature, cache=is_cached(), error_model="numpy", **options)
@@ -68,10 +77,27 @@ class AddressedFunction:
 
     @cached_property
     def _signature(self) -> Any:
+        from gearidae.compiled.kinds import signature_of
+
         return signature_of(self.py_func)
 
-    def _typing(self, _context: Any) -> Callable[..., Any]:
-        """Tell numba what a call takes and returns: numbers that are written out have no types of their own here."""
+    @cached_property
+    def _numba_type_(self) -> Any:
+        """By which numba knows it in a compiled function, and how it writes a call."""
+        from numba import types
+        from numba.core.typing.templates import CallableTemplate
+        from numba.extending import lower_builtin
+
+        any_number: Any = types.VarArg(types.Any)  # type: ignore[no-untyped-call]
+        write: Any = lower_builtin(self, any_number)  # type: ignore[no-untyped-call]
+        write(self._call)
+        members = {"key": self, "generic": lambda template: self._typing}
+        template = type(f"{self.py_func.__name__}_template", (CallableTemplate,), members)
+        return types.Function(template)
+
+    @property
+    def _typing(self) -> Callable[..., Any]:
+        """Tells numba what a call takes and returns: numbers that are written out have no types of their own here."""
 
         def typed(*_arguments: Any) -> Any:
             return self._signature
@@ -81,6 +107,8 @@ class AddressedFunction:
 
     def _call(self, context: Any, builder: Any, signature: Any, values: Any) -> Any:
         """Write a call into a caller's code."""
+        from llvmlite import ir
+
         slot = builder.module.globals.get(self._symbol)
         if slot is None:
             slot = ir.GlobalVariable(builder.module, ir.IntType(64), self._symbol)
@@ -110,9 +138,7 @@ def compiled_once(part: str, *, makes_arrays: bool = False) -> Callable[[F], F]:
     """
 
     def declare(function: F) -> F:
-        form = compiled(makes_arrays=makes_arrays)(function)
-        if not isinstance(form, Function):  # a numba that compiles nothing, or does not know our functions
-            return form
+        form: Any = compiled(makes_arrays=makes_arrays)(function)
         return cast("F", AddressedFunction(form, part, makes_arrays))
 
     return declare

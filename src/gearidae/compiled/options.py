@@ -12,9 +12,7 @@ from contextlib import suppress
 from functools import cache
 from typing import Any, Final
 
-import numba
-
-from gearidae.compiled.cache import PLAIN, cache_folder, is_cached
+from gearidae.compiled.cache import PLAIN, cache_folder, is_cached, numba
 
 log = logging.getLogger(__name__)
 

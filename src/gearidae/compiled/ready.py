@@ -5,6 +5,13 @@ from __future__ import annotations
 import threading
 from typing import Final, Protocol
 
+SOLVER: Final = "the solver"
+ELASTIC: Final = "elastic contacts"
+EXPOSURES: Final = "exposures"
+POPULATION: Final = "populations of asperities"
+FRICTION: Final = "friction"
+"""Parts of the program, each compiled with the first scene that needs it."""
+
 
 class Waiting(Protocol):
     """A function that has been declared and not yet compiled."""

@@ -13,15 +13,13 @@ from typing import Any, Final
 from numba.core import event
 
 from gearidae.compiled import is_ready, make_ready
+from gearidae.compiled.ready import ELASTIC as ELASTIC
+from gearidae.compiled.ready import EXPOSURES as EXPOSURES
+from gearidae.compiled.ready import FRICTION as FRICTION
+from gearidae.compiled.ready import POPULATION as POPULATION
+from gearidae.compiled.ready import SOLVER as SOLVER
 
 log = logging.getLogger(__name__)
-
-SOLVER: Final = "the solver"
-ELASTIC: Final = "elastic contacts"
-EXPOSURES: Final = "exposures"
-POPULATION: Final = "populations of asperities"
-FRICTION: Final = "friction"
-"""Parts of the engine, each compiled with the first scene that needs it."""
 
 HOW_LONG: Final = {
     SOLVER: "about a minute",

@@ -55,8 +55,8 @@ from gearidae.engine.setup.build_torques import KNOT_SPACING
 from gearidae.engine.setup.kept_asperities import joined_asperities
 from gearidae.engine.setup.problem import Problem
 from gearidae.engine.setup.start import Start
-from gearidae.engine.torques.schedule import segment_ends
 from gearidae.errors import SceneError
+from gearidae.laws.shaft.schedule import segment_ends
 from gearidae.records import EventKind, Events, Flank
 from gearidae.records.quantity import convert
 from gearidae.scene import Scene

@@ -10,6 +10,8 @@ import numpy as np
 
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
+from gearidae.laws.law import DRIVE, LOAD
+from gearidae.laws.shafts import slowing
 from gearidae.mesh.pair_contact import PairContact, pair_contact
 from gearidae.runs.rubbing import hub_constants, transmitted_share
 from gearidae.scene import GearScene, RollerScene, Scene, require_gears
@@ -125,16 +127,17 @@ def balanced_speed(scene: GearScene, torque: float) -> float:
 def _balance(
     scene: GearScene, torque: float, transmitted: float, taken: tuple[float, float] = (0.0, 0.0)
 ) -> float:
-    gears, drive, load = scene.gears, scene.drive, scene.load
+    gears, drive = scene.gears, scene.drive
     ratio = gears.gear_teeth / gears.pinion_teeth
+    (at_pinion, _), (at_gear, drag) = slowing(scene, DRIVE), slowing(scene, LOAD)
     held = _mean_size(_over_run(scene, 0.0, drive.speed_knots()))
     driven = torque + drive.speed_gain * held - taken[0]
     surplus = driven * ratio * transmitted - _mean_resistance(scene) - taken[1]
     if surplus <= 0.0:
         return 0.0
-    linear = load.viscous + drive.speed_gain * ratio**2 * transmitted
-    slowing = linear + math.sqrt(linear**2 + 4.0 * load.drag * surplus)
-    return 2.0 * surplus / slowing if slowing > 0.0 else math.inf
+    linear = at_gear + at_pinion * ratio**2 * transmitted
+    slope = linear + math.sqrt(linear**2 + 4.0 * drag * surplus)
+    return 2.0 * surplus / slope if slope > 0.0 else math.inf
 
 
 def _over_run(scene: GearScene, constant: float, knots: Sequence[tuple[float, float]]) -> Floats:
@@ -201,12 +204,13 @@ def mean_drive_torque(scene: GearScene) -> float:
     SceneError
         If the scene has no gears.
     """
-    gears, drive, load = scene.gears, scene.drive, scene.load
+    gears, drive = scene.gears, scene.drive
     mean = _mean_size(_over_run(scene, drive.torque, drive.schedule))
     if drive.speed is None and drive.law is None:
         return mean
     speed = abs(scene.initial.gear_speed) if drive.speed is None else _balance(scene, mean, 1.0)
-    resistance = _mean_resistance(scene) + speed * (load.viscous + load.drag * speed)
+    linear, quadratic = slowing(scene, LOAD)
+    resistance = _mean_resistance(scene) + speed * (linear + quadratic * speed)
     taken = resistance * gears.pinion_teeth / gears.gear_teeth
     return taken if drive.law is None else max(mean, taken)
 

@@ -50,7 +50,7 @@ def _laws(scene: Scene) -> list[str]:
     for key, shaft in (("drive.law", scene.drive), ("load.law", scene.load)):
         if shaft is None or shaft.law is None or torque_law(shaft.law.name).is_declared:
             continue
-        from gearidae.engine.torques.law import JUMP_LOOKS, law_knots  # with numba, and few scenes need it
+        from gearidae.laws.shaft.own import JUMP_LOOKS, law_knots  # with numba, and few scenes need it
 
         times = law_knots(shaft.law.name, shaft.law.numbers(), 0.0, scene.run.duration)
         if times:

@@ -9,7 +9,7 @@ from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.model.state import DRIVE, PHASE, Floats, Model, U, V, W
 from gearidae.engine.pairs.shaft_angle import torque_angle
-from gearidae.engine.torques.law import SHIFT, law_misfit, switch_value
+from gearidae.laws.shaft.own import SHIFT, law_misfit, switch_value
 
 SHARE: Final = 0.5
 """Of the tolerance of a speed: impulse over the mass that a step may miss of a law that jumps in it."""

@@ -27,8 +27,8 @@ from gearidae.engine.events.law_switches import law_guard
 from gearidae.engine.events.sliding import sliding_guard
 from gearidae.engine.model.state import DRIVE, LOAD, PHASE, Floats, Model, U
 from gearidae.engine.pairs.shaft_angle import torque_angle
-from gearidae.engine.torques.schedule import straight_until
-from gearidae.engine.torques.torque import torque_force, torque_range
+from gearidae.laws.shaft.schedule import straight_until
+from gearidae.laws.shafts import driving_force, driving_range
 
 LOOKS: Final = 10_000
 """At the margin, one after the other, at most, between two returns to the driver."""
@@ -92,10 +92,10 @@ def _holds_throughout(m: Model, t: float, to: float, y: Floats) -> bool:
     """Whether gears are held at all torques within the bounds of a time."""
     drive, load = m.scene.torque[DRIVE], m.scene.torque[LOAD]
     angles = torque_angle(m, DRIVE, y[U], y[PHASE]), torque_angle(m, LOAD, y[U], y[PHASE])
-    low, high = torque_range(m, DRIVE, t, to, angles[0])
+    low, high = driving_range(m, DRIVE, t, to, angles[0])
     at_drive, at_load = drive.constant, load.constant
-    from_now = at_drive - torque_force(m, DRIVE, t, angles[0], 0.0)
-    load.constant += torque_range(m, LOAD, t, to, angles[1])[0] - torque_force(m, LOAD, t, angles[1], 0.0)
+    from_now = at_drive - driving_force(m, DRIVE, t, angles[0], 0.0)
+    load.constant += driving_range(m, LOAD, t, to, angles[1])[0] - driving_force(m, LOAD, t, angles[1], 0.0)
     drive.constant = from_now + low
     held = _margin(m, t, y) > 0.0
     drive.constant = from_now + high

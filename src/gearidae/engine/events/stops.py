@@ -13,7 +13,7 @@ from gearidae.compiled import compiled
 from gearidae.engine.events.law_switches import set_law_window
 from gearidae.engine.events.record import record
 from gearidae.engine.model.state import PHASE, SCHEDULES, STOPS, Floats, Model
-from gearidae.engine.torques.schedule import enter_segment
+from gearidae.laws.shaft.schedule import enter_segment
 from gearidae.records import EventKind, Flank
 
 _SCHEDULE_KNOT, _NO_FLANK = float(EventKind.SCHEDULE_KNOT), float(Flank.NONE)

@@ -33,7 +33,7 @@ from gearidae.engine.model.record_types import AT_REST, HELD_GEAR, HELD_PAIR, HE
 from gearidae.engine.model.state import COAST, LOAD, PHASE, Floats, Model, U, V, W
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.pairs.tooth_pairs import flank_of_history, pair_gap
-from gearidae.engine.torques.torque import torque_force
+from gearidae.laws.shafts import acting, driving_force
 
 RETURN: Final = 0.05
 """Rate at which the sliding that errors have brought about in a pair that rolls is taken out again, over 1/tau."""
@@ -52,7 +52,7 @@ def dry_force(m: Model, t: float, y: Floats) -> float:
     """Dry resistance at the gear, over its base radius."""
     if m.scene.dry == 0:
         return 0.0
-    return max(torque_force(m, LOAD, t, torque_angle(m, LOAD, y[U], y[PHASE]), y[W]), 0.0)
+    return max(driving_force(m, LOAD, t, torque_angle(m, LOAD, y[U], y[PHASE]), y[W]), 0.0)
 
 
 @compiled(inline=True)
@@ -247,18 +247,18 @@ def _gear_slip(m: Model) -> float:
 
 
 @compiled(inline=True)
-def without_drag(m: Model, gear: float, w: float) -> float:
-    """Force at the gear less both drags."""
-    return gear - m.scene.drag * w * abs(w) - m.scene.viscous * w
+def with_acting(m: Model, t: float, y: Floats, gear: float) -> float:
+    """Force at the gear with all that acts on its shaft but friction and the dry resistance."""
+    return acting(m, LOAD, t, torque_angle(m, LOAD, y[U], y[PHASE]), y[W], gear)
 
 
 @compiled_once(FRICTION)
 def rubbed_accelerations(
     m: Model, t: float, y: Floats, turn: float, pinion: float, gear: float
 ) -> tuple[float, float]:
-    """Accelerations of both base circles; see `solve_shafts`. The gear's force is that with the drags."""
+    """Accelerations of both base circles, see `solve_shafts`; the gear's force is without what acts on its shaft."""
     set_limits(m, t, y[W])
-    shafts = solve_shafts(m, t, y, turn, pinion, without_drag(m, gear, y[W]))
+    shafts = solve_shafts(m, t, y, turn, pinion, with_acting(m, t, y, gear))
     return shafts.pinion, shafts.gear
 
 

@@ -15,7 +15,7 @@ from typing import Final, NamedTuple
 from gearidae.compiled import compiled
 from gearidae.engine.model.state import DRIVE, PHASE, Floats, Model, U
 from gearidae.engine.pairs.shaft_angle import torque_angle
-from gearidae.engine.torques.law import law_force, law_force_rate
+from gearidae.laws.shaft.own import law_force, law_force_rate
 
 _TINY = 1e-300
 _ROUNDING = 1e-12

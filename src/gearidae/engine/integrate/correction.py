@@ -43,8 +43,6 @@ def correct(m: Model, t: float, cj: float, y: Floats, yp: Floats, delta: Floats)
     delta[W] = (v_v * right_w - w_v * right_v) * share
     delta[U] = (delta[V] - of_u) * step
     delta[PHASE] = (turning * delta[W] - of_phase) * step
-    gain = (
-        s.by_pinion * m.scene.speed_gain
-    )  # which acts on the pinion alone, and is in its slope in v already
-    slowing = 2.0 * (abs(s.pinion_v) + abs(s.gear_v) + abs(s.pinion_w + gain) + abs(s.gear_w))
+    own = s.by_pinion * s.slowing  # of the pinion, which is in its slope in v already
+    slowing = 2.0 * (abs(s.pinion_v) + abs(s.gear_v) + abs(s.pinion_w - own) + abs(s.gear_w))
     return abs(s.pinion_u) + abs(s.gear_u) + slowing * slowing

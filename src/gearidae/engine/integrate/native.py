@@ -14,9 +14,9 @@ import numpy as np
 
 from gearidae.arrays import Ints
 from gearidae.compiled import compiled
+from gearidae.engine import adams
 from gearidae.engine.elastic.static_condensation import begin_deflections
 from gearidae.engine.events.stops import next_stop
-from gearidae.engine.formulas import adams
 from gearidae.engine.integrate.accepted_step import finish_step, has_room, prepare_restart, prepare_start
 from gearidae.engine.integrate.callbacks import callbacks
 from gearidae.engine.integrate.driver import (

@@ -18,8 +18,8 @@ import math
 from typing import Final, NamedTuple
 
 from gearidae.compiled import compiled
+from gearidae.engine import adams
 from gearidae.engine.events.law_switches import misses_laws
-from gearidae.engine.formulas import adams
 from gearidae.engine.integrate.correction import correct
 from gearidae.engine.integrate.step_control import below_gap_bound, control_step, max_stable_order
 from gearidae.engine.model.state import Floats, Model

@@ -1,7 +1,7 @@
 """The portable driver: the same residual, Jacobian and guard through scikit-sundae's public API.
 
 Slower by the cost of its Python callbacks, and free of any assumption about how SUNDIALS was built. The formulas are
-IDA's own, so that a run is less accurate at the same tolerance (`gearidae.engine.formulas.adams`); histories and
+IDA's own, so that a run is less accurate at the same tolerance (`gearidae.engine.adams`); histories and
 events are dealt with as in the native driver (`gearidae.engine.integrate.accepted_step`). Between steps it interpolates
 for itself, because the API has no dense output.
 """

@@ -21,7 +21,7 @@ from gearidae.engine.model.state import DRIVE, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.pairs.tooth_pairs import static_error
-from gearidae.engine.torques.torque import is_steady, torque_force
+from gearidae.laws.shafts import driving_force, is_steady
 
 _PASSES: Final = 2
 """Newton steps to the equilibrium, each of which is shorter than a tolerance."""
@@ -82,7 +82,7 @@ def _step_to_equilibrium(m: Model, t: float, y: Floats, v: float) -> float:
     share = 1.0
     if m.scene.error_count != 0:
         share -= static_error(m, y[U], y[PHASE])[2]
-    push = torque_force(m, DRIVE, t, torque_angle(m, DRIVE, y[U], y[PHASE]), 0.0) - share * mesh.force
+    push = driving_force(m, DRIVE, t, torque_angle(m, DRIVE, y[U], y[PHASE]), 0.0) - share * mesh.force
     if mesh.force_u > 0.0:
         return push / (share * mesh.force_u)
     return 0.0 if push == 0.0 == v else np.inf

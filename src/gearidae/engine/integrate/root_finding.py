@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.compiled import compiled
+from gearidae.engine import adams
 from gearidae.engine.events.asperity_events import first_grazing_minimum, note_step_start
 from gearidae.engine.events.events import guard
-from gearidae.engine.formulas import adams
 from gearidae.engine.model.state import Floats, Model
 from gearidae.engine.motion.pair_forces import finish_deflections, is_eliminated, set_deflections
 from gearidae.engine.sundials import memory

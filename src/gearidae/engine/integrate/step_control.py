@@ -30,7 +30,7 @@ from typing import Final
 import numpy as np
 
 from gearidae.compiled import compiled
-from gearidae.engine.formulas import adams
+from gearidae.engine import adams
 from gearidae.engine.model.state import COAST, DRIVE, MOST_ORDERS, Floats, Model, Record, V, W
 from gearidae.engine.pairs.tooth_pairs import in_flight, nearest_gap
 from gearidae.engine.sundials import names as sun

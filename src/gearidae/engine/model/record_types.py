@@ -6,6 +6,10 @@ from typing import Any, Final, TypeAlias
 
 import numpy as np
 
+from gearidae.laws.law import DRIVE as DRIVE
+from gearidae.laws.law import LOAD as LOAD
+from gearidae.laws.law import SCHEDULES as SCHEDULES
+from gearidae.laws.law import SPEED as SPEED
 from gearidae.records.quantity import INT as INT
 from gearidae.records.quantity import REAL as REAL
 from gearidae.records.quantity import Quantity
@@ -19,16 +23,8 @@ GEARS: Final = 0
 ROLLER: Final = 1
 """Kinds of scene."""
 
-DRIVE: Final = 0
 COAST: Final = 1
-"""Flanks."""
-
-LOAD: Final = 1
-"""The gear's shaft among the torques; the pinion's is `DRIVE`."""
-
-SPEED: Final = 2
-SCHEDULES: Final = 3
-"""The speed that a drive holds among the schedules, beside both torques; and how many there are."""
+"""The other flank than that of the `DRIVE`."""
 
 MATERIALS: Final = len(MATERIAL_NAMES)
 """Materials that may share the interface: bare first, then coated, then mixed."""

@@ -15,6 +15,7 @@ from gearidae.engine.model.record_types import (
     SCHEDULES,
     record_type,
 )
+from gearidae.laws.shafts import SHAFT_LAWS
 from gearidae.records.quantity import LENGTH, Unit
 
 MATERIAL: Final = record_type(
@@ -35,19 +36,11 @@ COVERAGE: Final = record_type(  # of one side's flanks
     ("place_scale", REAL),  # places in a pitch [1/pb]
 )
 
-TORQUE: Final = record_type(
-    ("constant", REAL),  # over the base radius [F]
-    ("harmonic_count", INT),  # [1]
-    ("harmonics_at", INT),  # amplitude, angular frequency and phase of each, among the tables [index]
-    ("order_count", INT),  # harmonics of the shaft's angle [1]
-    ("orders_at", INT),  # amplitude, order and phase of each, among the tables [index]
-    ("takes_angle", INT),  # 1 if the torque depends on the shaft's angle
-    ("law_count", INT),  # parameters of the law, whose address is in `WORK` [1]
-    ("law_at", INT),  # the parameters among the tables [index]
-    ("law_unknown", INT),  # 1 if the law says nothing of where it jumps
-    ("law_torque", REAL),  # unit of the law's torque [N m]
-    ("law_speed", REAL),  # unit of the shaft's speed [rad/s]
+TORQUE: Final = record_type(  # of a shaft
+    ("takes_angle", INT),  # 1 if a torque depends on the shaft's angle
     ("angle_unit", REAL),  # unit of the shaft's angle: sigma over the base radius [rad]
+    *(field for law in SHAFT_LAWS for field in law.fields),
+    *((constant.name, REAL) for law in SHAFT_LAWS for constant in law.coefficients),
 )
 
 SCHEDULE: Final = record_type(
@@ -161,14 +154,11 @@ SCENE: Final = record_type(
     ("sum_curvature", REAL),  # 1 over the sum of both radii of curvature [1/pb]
     ("curvature_force", INT),  # 1 if a force pays for the changing contact length
     *((name, REAL) for name in KEYED),
-    ("drag", REAL),  # force per squared surface velocity [F tau^2/sigma^2]
-    ("viscous", REAL),  # force per surface velocity [F tau/sigma]
     ("dry", INT),  # 1 if there is dry resistance at the gear
     ("error_count", INT),  # harmonics of the static transmission error [1]
     ("error_at", INT),  # order, amplitude and phase of each, among the tables [index]
     ("torque", TORQUE, (2,)),  # of the pinion (DRIVE) and of the gear (LOAD)
     ("schedule", SCHEDULE, (SCHEDULES,)),  # of both torques and of the speed that the drive holds (SPEED)
-    ("speed_gain", REAL),  # force per speed that the pinion lacks; 0 if none is held [F tau/sigma]
     # the contact
     ("cutoff", REAL),  # gap beyond which the force is taken as zero [sigma]
     ("contact_gap", REAL),  # gap of contact onset and separation [sigma]

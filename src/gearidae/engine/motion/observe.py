@@ -24,7 +24,7 @@ from gearidae.engine.pairs.tooth_pairs import (
     static_error,
 )
 from gearidae.engine.population.forces import asperities_joined
-from gearidae.engine.torques.torque import torque_force
+from gearidae.laws.shafts import driving_force
 from gearidae.records.columns import GEAR, GEAR_POPULATION, ROLLER, ROLLER_POPULATION
 
 
@@ -90,7 +90,7 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
     row[GEAR.drive_gap], row[GEAR.coast_gap] = drive_gap * length, coast_gap * length
     row[GEAR.pairs_in_contact] = touching
     turn, unit = (v + w) / (1.0 - e1), m.scene.force_unit
-    drive = torque_force(m, DRIVE, t, torque_angle(m, DRIVE, u, phase), turn)
+    drive = driving_force(m, DRIVE, t, torque_angle(m, DRIVE, u, phase), turn)
     row[GEAR.drive_torque] = drive * unit * m.scene.pinion_radius
     row[GEAR.load_torque] = resistance * unit * radius
     row[GEAR.pinion_angle] = angle_of_shaft(m, DRIVE, u, phase)

@@ -13,16 +13,16 @@ from gearidae.engine.friction.forces import (
     friction_slopes,
     rubbed_accelerations,
     solve_shafts,
-    without_drag,
+    with_acting,
 )
 from gearidae.engine.friction.pairs import direction, levers, set_limits
 from gearidae.engine.model.record_types import AT_REST, FREE, HELD_GEAR, HELD_PAIR
-from gearidae.engine.model.state import DRIVE, PHASE, Floats, Model, U, V, W
+from gearidae.engine.model.state import DRIVE, LOAD, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
 from gearidae.engine.pairs.pair_force import MeshForces
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.pairs.tooth_pairs import static_error
-from gearidae.engine.torques.torque import torque_force
+from gearidae.laws.shafts import by_speed, driving_force
 
 name_type(Slopes(*(0.0,) * 11), "Slopes")
 
@@ -49,13 +49,13 @@ class Shafts(NamedTuple):
 
 @compiled(inline=True)
 def shafts_at(m: Model, t: float, y: Floats, mesh: MeshForces) -> Shafts:
-    """Put the forces of the mesh, its damping and the drive on both shafts."""
+    """Put the forces of the mesh, its damping and the torques on the pinion on both shafts."""
     force = mesh.force + m.scene.damping * y[V]
     turn, e1, e2 = y[V] + y[W], 0.0, 0.0
     if m.scene.error_count != 0:
         _, _, e1, e2 = static_error(m, y[U], y[PHASE])
         turn /= 1.0 - e1
-    drive = torque_force(m, DRIVE, t, torque_angle(m, DRIVE, y[U], y[PHASE]), turn)
+    drive = driving_force(m, DRIVE, t, torque_angle(m, DRIVE, y[U], y[PHASE]), turn)
     return Shafts(turn, drive - (1.0 - e1) * force, force + mesh.relief, e1, e2)
 
 
@@ -70,9 +70,8 @@ def pinion_speed(m: Model, y: Floats) -> tuple[float, float]:
 
 @compiled
 def resisting_force(m: Model, t: float, y: Floats) -> float:
-    """Resistance at the gear over R2, scaled: dry in the direction of slip, and both drags (Eq. 2)."""
-    w = y[W]
-    return m.scene.drag * w * abs(w) + m.scene.viscous * w + m.state.slip * dry_force(m, t, y)
+    """What resists the gear over R2, scaled: what acts on its shaft, and dry resistance against its slip (Eq. 2)."""
+    return m.state.slip * dry_force(m, t, y) - with_acting(m, t, y, -0.0)
 
 
 @compiled(inline=True)
@@ -98,6 +97,8 @@ class AccelerationSlopes(NamedTuple):
     ----------
     by_pinion, by_both, by_gear : float
         Inverse mass matrix of what is free to move: entries of the pinion, off the diagonal, and of the gear.
+    slowing : float
+        Slope in the pinion's own speed of the torque on it, which is in both its slopes.
     """
 
     pinion_u: float
@@ -111,6 +112,7 @@ class AccelerationSlopes(NamedTuple):
     by_pinion: float
     by_both: float
     by_gear: float
+    slowing: float
 
 
 @compiled_once(FRICTION)
@@ -130,8 +132,8 @@ def acceleration_slopes(m: Model, y: Floats, mesh: MeshForces) -> AccelerationSl
     """Slopes of the accelerations, from those of the forces that `mesh_forces` has just summed.
 
     The static error's own slopes are left out: it is small, and these only steer Newton's iteration. So are the slopes
-    of a torque in angle and speed: a shaft takes many steps to follow a mild law, and each iteration reduces what is
-    left by the ratio of a step to that time. A drive that holds a speed is not mild, and its slope is there.
+    of a torque in angle and speed where its law says none: a shaft takes many steps to follow a mild law, and each
+    iteration reduces what is left by the ratio of a step to that time.
     """
     f = Slopes(
         m.scene.pinion_inverse_mass,
@@ -148,13 +150,14 @@ def acceleration_slopes(m: Model, y: Floats, mesh: MeshForces) -> AccelerationSl
     )
     if m.scene.friction.rubs != 0:
         f = _friction_slopes(m, y)
-    drag = 2.0 * m.scene.drag * abs(y[W]) + m.scene.viscous
-    gain, damping = m.scene.speed_gain, m.scene.damping
+    turn, damping = y[V] + y[W], m.scene.damping
     pinion_u, pinion_phase = f.pinion_u - mesh.force_u, f.pinion_phase - mesh.force_phase
-    pinion_v, pinion_w = -(damping + mesh.force_v + gain), -(mesh.force_w + gain)
+    slowing = by_speed(m, DRIVE, torque_angle(m, DRIVE, y[U], y[PHASE]), turn, -0.0)
+    pinion_v, pinion_w = slowing - (damping + mesh.force_v), slowing - mesh.force_w
     gear_u = f.gear_u + mesh.force_u + mesh.relief_u
     gear_phase = f.gear_phase + mesh.force_phase + mesh.relief_phase
-    gear_v, gear_w = damping + mesh.force_v + mesh.relief_v, mesh.force_w + mesh.relief_w - drag
+    gear_v = damping + mesh.force_v + mesh.relief_v
+    gear_w = by_speed(m, LOAD, torque_angle(m, LOAD, y[U], y[PHASE]), y[W], mesh.force_w + mesh.relief_w)
     a, b, c = f.by_pinion, f.by_both, f.by_gear
     return AccelerationSlopes(
         a * pinion_u + b * gear_u,
@@ -168,6 +171,7 @@ def acceleration_slopes(m: Model, y: Floats, mesh: MeshForces) -> AccelerationSl
         a,
         b,
         c,
+        slowing,
     )
 
 
@@ -182,7 +186,7 @@ def forces_at_shafts(m: Model, t: float, y: Floats) -> tuple[float, float, float
     """
     s = shafts_at(m, t, y, forces_at(m, t, y))
     set_limits(m, t, y[W])
-    return s.turn, s.pinion, without_drag(m, s.gear, y[W])
+    return s.turn, s.pinion, with_acting(m, t, y, s.gear)
 
 
 @compiled_once(FRICTION)

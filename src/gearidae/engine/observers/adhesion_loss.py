@@ -14,7 +14,6 @@ from __future__ import annotations
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.energy.contacts import joining_losses
-from gearidae.engine.formulas.quadrature import integral
 from gearidae.engine.model.state import PHASE, Floats, Model, V, W
 from gearidae.engine.pairs.coverage import NONE, Shares, path_position, shares_of, weighed
 from gearidae.engine.pairs.lengths import weighed_length
@@ -26,6 +25,7 @@ from gearidae.engine.pairs.tooth_pairs import (
     nearest_gap,
     pairs_on_path,
 )
+from gearidae.formulas.quadrature import integral
 
 
 @compiled(inline=True)

@@ -33,6 +33,7 @@ import math
 from typing import Final
 
 from gearidae.compiled import compiled, compiled_once
+from gearidae.engine import adams
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.energy.contacts import stored_energy
 from gearidae.engine.energy.kinetic import energy_of_speeds, kinetic_energy
@@ -40,15 +41,6 @@ from gearidae.engine.energy.radius import radius_power
 from gearidae.engine.events.mesh_marks import crossed_mark
 from gearidae.engine.events.pair_events import newly_stretched
 from gearidae.engine.events.sliding import dry_guard
-from gearidae.engine.formulas import adams
-from gearidae.engine.formulas.quadrature import (
-    Ends,
-    error_estimate,
-    integral,
-    integral_of_cube,
-    integral_of_square,
-    torque_work,
-)
 from gearidae.engine.model.state import DRIVE, LOAD, MATERIALS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.observers.adhesion_loss import joining_lag
 from gearidae.engine.pairs.shaft_angle import torque_angle
@@ -60,7 +52,14 @@ from gearidae.engine.pairs.tooth_pairs import (
     list_known,
     static_error,
 )
-from gearidae.engine.torques.torque import is_constant, torque_force, torque_rate
+from gearidae.formulas.quadrature import (
+    Ends,
+    error_estimate,
+    integral,
+    integral_of_square,
+    torque_work,
+)
+from gearidae.laws.shafts import book_losses, driving_force, driving_rate, is_constant
 
 ORDER: Final = 4
 """Order of the quadrature."""
@@ -287,18 +286,8 @@ def _accumulate_losses(m: Model, t: float, y: Floats, yp: Floats) -> None:
     if h == 0.0:
         return
     gear, w, w_rate = y[PHASE] / m.scene.phase_rate, y[W], yp[W]
-    taken = 0.0
     e, turn = m.state.energy, Ends(r.gear_speed, r.gear_acceleration, w, w_rate)
-    if m.scene.drag != 0.0:
-        cube, error = integral_of_cube(h, gear - r.gear_travel, turn)
-        taken = m.scene.drag * cube
-        e.drag_loss += taken
-        e.loss_error += m.scene.drag * error
-    if m.scene.viscous != 0.0:
-        square, error = integral_of_square(h, gear - r.gear_travel, turn)
-        e.drag_loss += m.scene.viscous * square
-        e.loss_error += m.scene.viscous * error
-        taken += m.scene.viscous * square
+    taken = book_losses(m, LOAD, h, gear - r.gear_travel, turn)
     if m.scene.damping != 0.0:
         mesh = Ends(r.mesh_speed, r.mesh_acceleration, y[V], yp[V])
         square, error = integral_of_square(h, y[U] - r.mesh_travel, mesh)
@@ -365,8 +354,8 @@ def _torque_slopes(m: Model, t: float, y: Floats) -> float:
         if not is_constant(m, shaft):
             speed = y[W] if shaft == LOAD else y[V] + y[W]
             angle = torque_angle(m, shaft, y[U], y[PHASE])
-            faster = torque_force(m, shaft, t, angle, speed + 1.0)
-            total += abs(faster - torque_force(m, shaft, t, angle, speed))
+            faster = driving_force(m, shaft, t, angle, speed + 1.0)
+            total += abs(faster - driving_force(m, shaft, t, angle, speed))
     return total
 
 
@@ -391,4 +380,4 @@ def _torque(
     if is_constant(m, shaft):
         return m.scene.torque[shaft].constant, 0.0
     angle = torque_angle(m, shaft, y[U], y[PHASE])
-    return torque_force(m, shaft, t, angle, speed), torque_rate(m, shaft, t, angle, speed, acceleration)
+    return driving_force(m, shaft, t, angle, speed), driving_rate(m, shaft, t, angle, speed, acceleration)

@@ -11,9 +11,8 @@ from typing import Final
 import numpy as np
 
 from gearidae.compiled import compiled, compiled_once
+from gearidae.engine import adams
 from gearidae.engine.compiling import FRICTION
-from gearidae.engine.formulas import adams
-from gearidae.engine.formulas.quadrature import error_estimate, integral, integral_with_middle
 from gearidae.engine.friction.forces import Shafts, solve_shafts
 from gearidae.engine.friction.hubs import Loads, Mesh, has_hubs, pin_rate, vector_sum
 from gearidae.engine.friction.pairs import direction, lever_rate, levers, set_limits
@@ -29,6 +28,7 @@ from gearidae.engine.observers.exposures.friction_work import (
     note_power,
 )
 from gearidae.engine.pairs.tooth_pairs import flank_of_history, static_error
+from gearidae.formulas.quadrature import error_estimate, integral, integral_with_middle
 
 _POWERS: Final = 8
 """Of the drive and the coast flank, of both hubs and the pin; and load times sliding speed of hubs and pin."""

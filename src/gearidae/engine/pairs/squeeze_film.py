@@ -13,10 +13,10 @@ from typing import NamedTuple
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.formulas.quadrature import Ends, integral_of_square
 from gearidae.engine.model.state import PHASE, Floats, Model, U, V, W
 from gearidae.engine.pairs.pair_force import PairForce
 from gearidae.engine.pairs.tooth_pairs import PairState, pair_at, pair_gap, pairs_felt
+from gearidae.formulas.quadrature import Ends, integral_of_square
 
 
 @compiled(inline=True)

@@ -41,12 +41,12 @@ from gearidae.engine.setup.checkpoint import scene_digest
 from gearidae.engine.setup.problem import Problem
 from gearidae.engine.setup.start import AT_ONCE, Start
 from gearidae.engine.setup.tables import Tables
-from gearidae.engine.torques.law import law_address, switch_address
-from gearidae.engine.torques.schedule import (
+from gearidae.laws.shaft.own import law_address, switch_address
+from gearidae.laws.shaft.schedule import (
     segment_ends,
 )
 from gearidae.mesh.involute import Geometry
-from gearidae.scene import MATERIAL_NAMES, Drive, GearScene, Load, RollerScene, Scene, require_gears
+from gearidae.scene import MATERIAL_NAMES, GearScene, RollerScene, Scene, require_gears
 from gearidae.scene.combinations import may_deflect
 from gearidae.scene.limits import check_reach, pairs_within_reach
 from gearidae.scene.sampled import columns_of
@@ -123,7 +123,6 @@ def _gear_problem(scene: GearScene, nodes: Nodes | None, begin: Start) -> Proble
     )
     s.curvature_force = int(mesh.radius_force)
     _set_keyed(s, scene)
-    _set_resistances(s, drive, load)
     grid = choose_model(s, scene, _gear_bounds(s, scene), nodes)
     s.dry = int(load.is_dry)
     widest = math.sqrt(0.25 / float(s.sum_curvature))
@@ -214,14 +213,6 @@ def _set_keyed(s: Record, scene: Scene) -> None:
     """Set the numbers that a key of the scene says."""
     for name, (key, unit) in KEYED.items():
         s[name] = attrgetter(key)(scene) / unit.in_si(s)
-
-
-def _set_resistances(s: Record, drive: Drive, load: Load) -> None:
-    """Set forces per speed: of both drags and of a drive that holds a speed."""
-    speed, force = float(s.length_unit) / float(s.time_unit), float(s.force_unit)
-    s.drag = load.drag / float(s.gear_radius) ** 3 * speed**2 / force
-    s.viscous = load.viscous / float(s.gear_radius) ** 2 * speed / force
-    s.speed_gain = drive.speed_gain / float(s.pinion_radius) ** 2 * speed / force
 
 
 def _set_geometry(s: Record, geometry: Geometry, tip_relief_radius: float) -> None:

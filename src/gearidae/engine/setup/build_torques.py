@@ -8,9 +8,10 @@ import numpy as np
 
 from gearidae.engine.model.state import DRIVE, LOAD, SPEED, STOPS, Floats, Record
 from gearidae.engine.setup.tables import Tables
-from gearidae.engine.torques.harmonic import common_period, pack_harmonics
-from gearidae.engine.torques.law import largest_torque, law_knots
-from gearidae.engine.torques.schedule import LEAST_CUBIC, fastest_schedule, pack_schedule, steep_knots
+from gearidae.laws.shaft.harmonic import common_period, pack_harmonics
+from gearidae.laws.shaft.own import largest_torque, law_knots
+from gearidae.laws.shaft.schedule import LEAST_CUBIC, fastest_schedule, pack_schedule, steep_knots
+from gearidae.laws.shafts import SHAFT_LAWS
 from gearidae.scene import Drive, GearScene, Knots, Load, Scene
 from gearidae.torques import torque_law
 
@@ -75,6 +76,9 @@ def add_torques(s: Record, tables: Tables, scene: GearScene, begin: float) -> No
         waves.append(np.array(pack_harmonics(harmonics, tau, unit)))
         orders = [(h.amplitude / unit, h.order, h.phase) for h in law.harmonic if h.order is not None]
         torque.constant = law.torque / unit
+        for constant in (constant for known in SHAFT_LAWS for constant in known.coefficients):
+            value = getattr(law, constant.name, 0.0)
+            torque[constant.name] = constant.scaled(value, radius, float(s.length_unit) / tau, force)
         torque.harmonic_count, torque.harmonics_at = len(harmonics), tables.add(waves[-1])
         torque.law_torque, torque.law_speed = unit, float(s.length_unit) / tau / radius
         torque.order_count, torque.orders_at = len(orders), tables.add([x for term in orders for x in term])
@@ -109,7 +113,7 @@ def add_torques(s: Record, tables: Tables, scene: GearScene, begin: float) -> No
     _set_looks(s, waves, scene)
     # a torque that knows the motion vibrates with it, and is looked at in each step
     laws = scene.drive.law is not None or scene.load.law is not None
-    knows_motion = laws or s.speed_gain != 0.0 or s.torque["takes_angle"].any()
+    knows_motion = laws or s.torque["speed_gain"].any() or s.torque["takes_angle"].any()
     s.quadrature_steps = 1 if knows_motion else QUADRATURE_STEPS
     s.quadrature_time = 1.0 / (1.0 / QUADRATURE_TIME + 4.0 * math.pi * fastest * tau)
 

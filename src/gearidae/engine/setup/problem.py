@@ -27,9 +27,9 @@ from gearidae.engine.observers.extremes.units import extremes_in_si
 from gearidae.engine.pairs.tooth_pairs import set_all_branches
 from gearidae.engine.setup import checkpoint as checkpoints
 from gearidae.engine.setup.kept_asperities import restore_asperities
-from gearidae.engine.torques.harmonic import fastest_harmonic
-from gearidae.engine.torques.schedule import fastest_schedule
 from gearidae.errors import SceneError
+from gearidae.laws.shaft.harmonic import fastest_harmonic
+from gearidae.laws.shaft.schedule import fastest_schedule
 from gearidae.records import EnergyBalance, Extremes, first_sample
 from gearidae.records.energy import ENERGY_NOW, ENERGY_SUMS
 from gearidae.records.quantity import in_si
@@ -162,8 +162,9 @@ class Problem:
             fastest_harmonic(self._harmonics(shaft), felt),
             fastest_schedule(scene.schedule[shaft], tables, felt),
         )
-        if shaft == DRIVE and scene.speed_gain > 0.0:
-            fastest = max(fastest, fastest_schedule(scene.schedule[SPEED], tables, felt / scene.speed_gain))
+        gain = float(scene.torque[shaft].speed_gain)
+        if gain > 0.0:
+            fastest = max(fastest, fastest_schedule(scene.schedule[SPEED], tables, felt / gain))
         return float(fastest)
 
     def kept(self, time: float, state: Floats, rates: Floats) -> tuple[EnergyBalance | None, Extremes | None]:

@@ -17,13 +17,13 @@ from gearidae.contact.history import extreme_gap, joined_height
 from gearidae.contact.kernels.law import loading_value
 from gearidae.engine.compiling import EXPOSURES
 from gearidae.engine.elastic.energy import nodes_number
-from gearidae.engine.formulas.interpolation import cubic
 from gearidae.engine.model.state import MATERIALS, Floats, Model
 from gearidae.engine.observers.exposures.bins import ROWS, bin_at, row_of, share_at_edge
 from gearidae.engine.pairs.tooth_pairs import contact_length, list_known
 from gearidae.engine.population.contact_point import pair_of, place_of_arc, spot_at
 from gearidae.engine.population.forces import candidate_energy
 from gearidae.engine.population.layout import ARC, HEIGHT, K_MATERIAL, KIND, REMEMBERED, SIGN, column
+from gearidae.formulas.interpolation import cubic
 
 
 @compiled

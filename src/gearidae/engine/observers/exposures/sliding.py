@@ -18,11 +18,11 @@ from __future__ import annotations
 import math
 
 from gearidae.compiled import compiled
-from gearidae.engine.formulas.interpolation import cubic, cubic_slope
-from gearidae.engine.formulas.quadrature import error_estimate, integral
 from gearidae.engine.model.state import PHASE, Floats, Model, U, V, W
 from gearidae.engine.observers.exposures.bins import ROWS, bin_at, share_at_edge
 from gearidae.engine.pairs.tooth_pairs import static_error
+from gearidae.formulas.interpolation import cubic, cubic_slope
+from gearidae.formulas.quadrature import error_estimate, integral
 
 PARTS = 16
 """Parts of an interval in which a contact passes the pitch point, or pushes between ends that pull."""

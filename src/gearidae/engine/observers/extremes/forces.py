@@ -12,13 +12,13 @@ import math
 from typing import Final
 
 from gearidae.compiled import compiled
-from gearidae.engine.formulas import adams
-from gearidae.engine.formulas.interpolation import cubic, quintic, vertex
+from gearidae.engine import adams
 from gearidae.engine.model.state import DRIVE, PHASE, Floats, Model, Record, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.pairs.tooth_pairs import in_flight, static_error
-from gearidae.engine.torques.torque import torque_force
+from gearidae.formulas.interpolation import cubic, quintic, vertex
+from gearidae.laws.shafts import driving_force
 
 NEAR_RECORD: Final = 0.1
 """Share of a record by which the parabola may miss it: it has been seen to be out by 3 % at loose tolerances."""
@@ -43,10 +43,10 @@ def force_of_motion(m: Model, t: float, y: Floats, yp: Floats) -> float:
     acceleration, turn = yp[V] + yp[W], y[V] + y[W]
     angle = torque_angle(m, DRIVE, y[U], y[PHASE])
     if m.scene.error_count == 0:
-        return torque_force(m, DRIVE, t, angle, turn) - acceleration / m.scene.pinion_inverse_mass
+        return driving_force(m, DRIVE, t, angle, turn) - acceleration / m.scene.pinion_inverse_mass
     _, _, e1, e2 = static_error(m, y[U], y[PHASE])
     turn /= 1.0 - e1
-    drive = torque_force(m, DRIVE, t, angle, turn)
+    drive = driving_force(m, DRIVE, t, angle, turn)
     pinion = (acceleration + e2 * turn * turn) / ((1.0 - e1) * m.scene.pinion_inverse_mass)
     return (drive - pinion) / (1.0 - e1)
 

@@ -12,12 +12,12 @@ from typing import Final
 from gearidae.compiled import compiled, compiled_once
 from gearidae.contact.history import extreme_gap
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.formulas.interpolation import cubic, cubic_slope
 from gearidae.engine.friction.forces import NO_FORCE, dry_force
 from gearidae.engine.model.checkpoint_record import WINDOWS
 from gearidae.engine.model.state import Floats, Model, Record, U, V
 from gearidae.engine.motion.pair_forces import forces_at
 from gearidae.engine.observers.standing.free_torques import slowest_period
+from gearidae.formulas.interpolation import cubic, cubic_slope
 from gearidae.records import RUN_PARTS
 
 HELD_WITHIN: Final = 0.5

@@ -7,7 +7,6 @@ from typing import Final
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.formulas.interpolation import cubic, cubic_slope
 from gearidae.engine.model.addresses import model_at
 from gearidae.engine.model.checkpoint_record import HIGH, MOST_STANDSTILLS, SPARE
 from gearidae.engine.model.record_types import AT_REST, FREE, HELD_GEAR
@@ -34,7 +33,8 @@ from gearidae.engine.observers.standing.zeros import (
     standing_since,
     stood_until,
 )
-from gearidae.engine.torques.schedule import straight_until
+from gearidae.formulas.interpolation import cubic, cubic_slope
+from gearidae.laws.shaft.schedule import straight_until
 from gearidae.records.standing import HALF_PITCH
 
 NEAR: Final = 3.0

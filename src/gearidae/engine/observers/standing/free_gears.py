@@ -14,16 +14,17 @@ from typing import Final
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.formulas.interpolation import cubic
 from gearidae.engine.friction.forces import NO_FORCE
 from gearidae.engine.model.state import DRIVE, LOAD, Model
 from gearidae.engine.observers.standing.free_torques import (
+    acting_on_free,
     enter_segments,
     excess,
     free_torque,
     largest_excess,
 )
-from gearidae.engine.torques.schedule import straight_until
+from gearidae.formulas.interpolation import cubic
+from gearidae.laws.shaft.schedule import straight_until
 from gearidae.records.standing import GROWS
 
 TOLERANCE: Final = 1e-5
@@ -103,7 +104,7 @@ def _follow_piece(m: Model, i: int, t: float, stop: float, enough: float) -> flo
 def _acceleration(m: Model, i: int, t: float, x: float, w: float, sign: float) -> float:
     """Acceleration of the base circles of free gears that turn in a direction."""
     force = free_torque(m, i, DRIVE, t, x, w) - sign * free_torque(m, i, LOAD, t, x, w)
-    force -= m.scene.drag * w * abs(w) + m.scene.viscous * w
+    force += acting_on_free(m, i, LOAD, t, x, w)
     return force / (1.0 / m.scene.pinion_inverse_mass + 1.0 / m.scene.gear_inverse_mass)
 
 

@@ -7,7 +7,7 @@ import math
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.model.state import DRIVE, LOAD, SCHEDULES, Model
-from gearidae.engine.torques.torque import torque_force, torque_range
+from gearidae.laws.shafts import acting, driving_force, driving_range
 
 
 @compiled
@@ -28,9 +28,15 @@ def free_torque(m: Model, i: int, shaft: int, t: float, travel: float, speed: fl
     if shaft == LOAD and m.scene.dry == 0:
         return 0.0
     until, m.work.law_until = m.work.law_until, 0.0  # laws at any time, not in the present piece
-    torque = torque_force(m, shaft, t, _angle(m, i, shaft, travel), speed)
+    torque = driving_force(m, shaft, t, _angle(m, i, shaft, travel), speed)
     m.work.law_until = until
     return torque if shaft != LOAD else max(torque, 0.0)
+
+
+@compiled
+def acting_on_free(m: Model, i: int, shaft: int, t: float, travel: float, speed: float) -> float:
+    """What acts on a shaft of free gears besides the driving torque and the dry resistance, scaled."""
+    return float(acting(m, shaft, t, _angle(m, i, shaft, travel), speed, -0.0))
 
 
 @compiled
@@ -45,8 +51,8 @@ def largest_excess(m: Model, i: int, t: float, to: float) -> float:
 
     Of a law the bound is that of its present value.
     """
-    low, high = torque_range(m, DRIVE, t, to, _angle(m, i, DRIVE, 0.0))
-    load = torque_range(m, LOAD, t, to, _angle(m, i, LOAD, 0.0))[0] if m.scene.dry != 0 else 0.0
+    low, high = driving_range(m, DRIVE, t, to, _angle(m, i, DRIVE, 0.0))
+    load = driving_range(m, LOAD, t, to, _angle(m, i, LOAD, 0.0))[0] if m.scene.dry != 0 else 0.0
     return max(abs(low), abs(high)) - max(load, 0.0)
 
 

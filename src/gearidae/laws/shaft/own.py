@@ -1,4 +1,4 @@
-"""Torque laws by their names (`gearidae.torques`): compiled when a scene first uses them, and called at an address.
+"""Torque laws of a user by their names (`gearidae.torques`): compiled when first used, and called at an address.
 
 A law may stand in any file, or in none that could be read again, so that its compiled code is not kept on disk:
 compiling a few lines takes a fraction of a second. Its address belongs to this process and lies in the work space,
@@ -9,21 +9,21 @@ from __future__ import annotations
 
 import ctypes
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from functools import cache
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
-import numba
 import numpy as np
-from llvmlite import ir
-from numba import carray, types  # type: ignore[attr-defined]
-from numba.core.errors import NumbaError, TypingError
-from numba.extending import intrinsic
 
 from gearidae.compiled import compiled
-from gearidae.engine.model.state import Model
+from gearidae.compiled.address import call_at
 from gearidae.errors import SceneError
+from gearidae.laws.law import INT, REAL, ShaftLaw
 from gearidae.torques import TorqueLaw, torque_law
+
+if TYPE_CHECKING:
+    from gearidae.engine.model.state import Model
 
 STEP: Final = 1e-4
 """Over tau, by which a law's rate looks to either side: contacts vibrate with about a radian a tau."""
@@ -44,14 +44,6 @@ MISFIT: Final = 0.3
 
 A jump between any two of them has 1 or more; a harmonic that turns by a radian in the step has 0.03."""
 
-_SIGNATURE = types.float64(
-    types.float64,
-    types.float64,
-    types.float64,
-    types.CPointer(types.float64),  # type: ignore[no-untyped-call]
-    types.int64,
-    types.int64,
-)
 _TORQUE: Final = 0
 _FORCE: Final = (1, 2)
 """Which number of a law is asked for: its torque, or a component of its force."""
@@ -114,13 +106,8 @@ def switch_address(name: str) -> int:
     switch = torque_law(name).switch
     if switch is None:
         return 0
-    try:
+    with _refusing(name, "the switch of this law"):
         return int(_compile(switch, True, False).address)
-    except NumbaError as error:
-        reason = str(error).strip().partition("\n")[0]
-        raise SceneError(
-            "law.name", name, f"numba cannot compile the switch of this law: {reason}"
-        ) from error
 
 
 def law_knots(name: str, parameters: Sequence[float], begin: float, end: float) -> list[float]:
@@ -154,17 +141,16 @@ def law_knots(name: str, parameters: Sequence[float], begin: float, end: float) 
 def found_jumps(law: TorqueLaw, numbers: Any, begin: float, end: float) -> list[float]:
     """Times [s] just behind the jumps in time of a law, at rest and at 1 rad and 1 rad/s."""
     times = np.linspace(begin, end, JUMP_LOOKS + 1)
-    try:
+    with _refusing(law.name, "this torque law"):
         search = _jump_search(law.function, law.takes_angle, law.has_force)
         return sorted({float(t) for at in (0.0, 1.0) for t in search(times, at, numbers)})
-    except NumbaError as error:
-        reason = str(error).strip().partition("\n")[0]
-        raise SceneError("law.name", law.name, f"numba cannot compile this torque law: {reason}") from error
 
 
 @cache
 def _jump_search(function: Callable[..., Any], takes_angle: bool, has_force: bool) -> Any:
     """Compile the search for jumps of a law."""
+    from gearidae.compiled.cache import numba
+
     law: Any = numba.njit(error_model="numpy")(getattr(function, "py_func", function))
 
     @numba.njit(error_model="numpy")
@@ -201,17 +187,32 @@ def _jump_search(function: Callable[..., Any], takes_angle: bool, has_force: boo
 
 
 def _callback(name: str) -> Any:
-    try:
+    with _refusing(name, "this torque law"):
         law = torque_law(name)
         return _compile(law.function, law.takes_angle, law.has_force)
-    except NumbaError as error:
+
+
+@contextmanager
+def _refusing(name: str, what: str) -> Iterator[None]:
+    """Refuse what numba cannot compile, by the key of the law."""
+    from gearidae.compiled.cache import numba
+
+    try:
+        yield
+    except numba.core.errors.NumbaError as error:
         reason = str(error).strip().partition("\n")[0]
-        raise SceneError("law.name", name, f"numba cannot compile this torque law: {reason}") from error
+        raise SceneError("law.name", name, f"numba cannot compile {what}: {reason}") from error
 
 
 @cache
 def _compile(function: Callable[..., Any], takes_angle: bool, has_force: bool) -> Any:
     """Compile a law; what has been compiled stays, as its address may be in use."""
+    from gearidae.compiled.cache import numba
+
+    types: Any = numba.types
+    carray: Any = numba.carray  # type: ignore[attr-defined]
+    numbers = types.CPointer(types.float64)
+    signature = types.float64(types.float64, types.float64, types.float64, numbers, types.int64, types.int64)
     law: Any = numba.njit(error_model="numpy")(getattr(function, "py_func", function))
 
     @numba.njit(error_model="numpy")
@@ -227,28 +228,7 @@ def _compile(function: Callable[..., Any], takes_angle: bool, has_force: bool) -
         torque, x, y = value(t, angle, speed, carray(parameters, (count,)))
         return torque if which == 0 else x if which == 1 else y
 
-    return numba.cfunc(_SIGNATURE)(torque_or_force if has_force else torque)
-
-
-def _typed(  # the arguments of the law, where its parameters are, and which number of it is asked for
-    typing: Any, address: Any, t: Any, angle: Any, speed: Any, numbers: Any, at: Any, count: Any, which: Any
-) -> Any:
-    """Type of a call of the law at an address, and the code that makes it."""
-    if numbers.layout != "C":
-        raise TypingError(f"the array must be contiguous, and {numbers} may not be")
-
-    def call(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        address, t, angle, speed, numbers, at, count, which = values
-        array = context.make_array(signature.args[4])(context, builder, numbers)
-        handed = [t, angle, speed, builder.gep(array.data, [at]), count, which]
-        kind = ir.FunctionType(ir.DoubleType(), [value.type for value in handed])
-        return builder.call(builder.inttoptr(address, kind.as_pointer()), handed)
-
-    real, whole = types.float64, types.int64
-    return real(whole, real, real, real, numbers, whole, whole, whole), call
-
-
-_call: Any = intrinsic(_typed)
+    return numba.cfunc(signature)(torque_or_force if has_force else torque)
 
 
 @compiled
@@ -272,7 +252,7 @@ def switch_value(m: Model, shaft: int, t: float, angle: float, speed: float) -> 
 def _of_law(m: Model, address: int, shaft: int, which: int, t: float, angle: float, speed: float) -> float:
     """Number of a compiled function of a shaft's law."""
     torque = m.scene.torque[shaft]
-    return _call(
+    return call_at(
         address,
         t * m.scene.time_unit,
         angle,
@@ -363,3 +343,49 @@ def law_misfit(
         fourth += sign * (1.0 if i in (0, 4) else 6.0 if i == 2 else 4.0) * value
         sign = -sign
     return h * (high - low) if abs(fourth) > MISFIT * (high - low) else 0.0
+
+
+# -- its verbs -------------------------------------------------------------------------------------------------------
+
+
+@compiled(inline=True)
+def _force(m: Model, shaft: int, t: float, angle: float, speed: float, value: float) -> float:
+    if m.work.torque_law[shaft] != 0:
+        value += law_value(m, shaft, t, angle, speed)
+    return value
+
+
+@compiled
+def _rate(
+    m: Model, shaft: int, t: float, angle: float, speed: float, acceleration: float, value: float
+) -> float:
+    if m.work.torque_law[shaft] != 0:
+        value += law_rate(m, shaft, t, angle, speed, acceleration)
+    return value
+
+
+@compiled
+def _is_constant(m: Model, shaft: int, value: bool) -> bool:
+    return bool(value and m.work.torque_law[shaft] == 0)
+
+
+@compiled
+def _is_steady(m: Model, shaft: int, t: float, value: bool) -> bool:
+    return bool(value and m.work.torque_law[shaft] == 0)
+
+
+OWN = ShaftLaw(
+    "law",
+    drives=True,
+    fields=(
+        ("law_count", INT),  # parameters of the law, whose address is in `WORK` [1]
+        ("law_at", INT),  # the parameters among the tables [index]
+        ("law_unknown", INT),  # 1 if the law says nothing of where it jumps
+        ("law_torque", REAL),  # unit of the law's torque [N m]
+        ("law_speed", REAL),  # unit of the shaft's speed [rad/s]
+    ),
+    force=_force,
+    rate=_rate,
+    is_constant=_is_constant,
+    is_steady=_is_steady,
+)

@@ -9,14 +9,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gearidae.arrays import Floats
 from gearidae.compiled import compiled, compiled_once
-from gearidae.engine.compiling import SOLVER
-from gearidae.engine.model.state import SCHEDULES, Floats, Model, Record
+from gearidae.compiled.ready import SOLVER
+from gearidae.laws.law import SCHEDULES, Range, ShaftLaw
+
+if TYPE_CHECKING:
+    from gearidae.engine.model.state import Model
 
 LEAST_CUBIC = 3
 """Knots that a cubic takes; two are joined by a straight line."""
@@ -49,7 +53,7 @@ def pack_schedule(
     return np.concatenate([knots.ravel(), coefficients[2::-1].T.ravel()])
 
 
-def segment_ends(schedule: Record, tables: Floats) -> Floats:
+def segment_ends(schedule: Any, tables: Floats) -> Floats:
     """Times at which a schedule enters its segments: all knots, or the first and the last of a cubic one.
 
     Parameters
@@ -63,7 +67,7 @@ def segment_ends(schedule: Record, tables: Floats) -> Floats:
     return times[[0, -1]] if schedule.cubic else times
 
 
-def fastest_schedule(schedule: Record, tables: Floats, felt: float) -> float:
+def fastest_schedule(schedule: Any, tables: Floats, felt: float) -> float:
     """Angular frequency of the harmonic that is as steep as a cubic schedule, if it is felt; 0 else.
 
     Between two knots at which its slope is zero a cubic is steeper than their chord by half. Pieces between
@@ -76,7 +80,7 @@ def fastest_schedule(schedule: Record, tables: Floats, felt: float) -> float:
     tables : ndarray
         Of the model.
     felt : float
-        Impulse, see `gearidae.engine.torques.harmonic.fastest_harmonic`.
+        Impulse, see `gearidae.laws.shaft.harmonic.fastest_harmonic`.
     """
     if not schedule.cubic:
         return 0.0
@@ -211,3 +215,42 @@ def straight_until(m: Model, t: float, stop: float) -> float:
             end = begin + (done + 1.0) * part
             stop = min(stop, end if end > t else end + part)
     return stop
+
+
+@compiled(inline=True)
+def _force(m: Model, shaft: int, t: float, angle: float, speed: float, value: float) -> float:
+    return schedule_value(m, shaft, t, value)
+
+
+@compiled
+def _rate(
+    m: Model, shaft: int, t: float, angle: float, speed: float, acceleration: float, value: float
+) -> float:
+    return value + schedule_rate(m, shaft, t)
+
+
+@compiled
+def _is_constant(m: Model, shaft: int, value: bool) -> bool:
+    return bool(value and m.scene.schedule[shaft].knot_count == 0)
+
+
+@compiled
+def _is_steady(m: Model, shaft: int, t: float, value: bool) -> bool:
+    return bool(value and not turns_within(m, shaft) and schedule_rate(m, shaft, t) == 0.0)
+
+
+@compiled
+def _range(m: Model, shaft: int, t: float, to: float, value: Range) -> Range:
+    change = schedule_value(m, shaft, to, 0.0) - schedule_value(m, shaft, t, 0.0)
+    return Range(value.moving, value.swing, value.low + min(change, 0.0), value.high + max(change, 0.0))
+
+
+SCHEDULE = ShaftLaw(
+    "schedule",
+    drives=True,
+    force=_force,
+    rate=_rate,
+    is_constant=_is_constant,
+    is_steady=_is_steady,
+    range=_range,
+)

@@ -1,0 +1,1 @@
+"""Laws of a shaft, one file each; `gearidae.laws.shafts` lists them."""
