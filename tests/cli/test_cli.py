@@ -150,7 +150,7 @@ def test_init_writes_every_key_of_its_tables(folder):
     text = (folder / "mine.toml").read_text()
     for info in describe_keys():
         table, _, key = info.key.partition(".")
-        if key and table != "roller":
+        if key and table not in ("roller", "shafts", "meshes"):
             part = re.split(r"\n\[\w+\]", text.partition(f"\n[{table}]")[2])[0]
             name = key.split(".")[-1]
             assert re.search(rf"\b{name} =|\[\[{table}\.{name}\]\]", part), info.key

@@ -16,20 +16,26 @@ CONTRACT = {
     "face_width hub_friction pinion_hub_radius gear_hub_radius pinion_hub_adhesion gear_hub_adhesion "
     "pinion_axial_load gear_axial_load pinion_dimple_radius gear_dimple_radius",
     "mesh": "backlash tip_relief_radius radius_force damping film_damping film_gap static_error static_error.order "
-    "static_error.amplitude static_error.phase",
+    "static_error.amplitude static_error.phase module driver_base_radius pressure_angle face_width",
     "surface": "youngs_modulus poisson_ratio energy asperity_density asperity_radius roughness interaction_range "
     "hamaker provenance humidity contact_angle bridged temperature",
     "coating": "sam_fraction energy hamaker pairing thickness pinion_fraction gear_fraction pinion_table gear_table "
     "friction shear_strength contact_angle",
-    "drive": "torque harmonic schedule harmonic.amplitude harmonic.frequency harmonic.order harmonic.phase law "
+    "drive": "shaft torque harmonic schedule harmonic.amplitude harmonic.frequency harmonic.order harmonic.phase law "
     "law.name law.parameters orientation pin_friction pin_radius speed speed_gain",
-    "load": "torque harmonic drag viscous schedule harmonic.amplitude harmonic.frequency harmonic.order "
+    "load": "shaft torque harmonic drag viscous schedule harmonic.amplitude harmonic.frequency harmonic.order "
     "harmonic.phase law law.name law.parameters",
     "initial": "gear_speed gap mesh_phase",
     "run": "asperity_events balance passages exposures duration samples rtol method stop checkpoints largest_step",
     "roller": "radius mass width speed height",
     "contact": "model bodies roughness asperity seed radius_spread asperities friction friction_law shear_strength",
 }
+
+SHAFT = (
+    "inertia density teeth gears gears.NAME hub_friction hub_radius hub_adhesion axial_load dimple_radius resistance "
+    "viscous drag"
+)
+MESH = "driver driven angle phase offset coating surface"
 
 
 @pytest.mark.parametrize("name", PRESETS)
@@ -83,7 +89,9 @@ def test_presets_share_one_surface() -> None:
 
 def test_every_key_is_described() -> None:
     keys = describe_keys()
-    expected = ["name", *(f"{table}.{name}" for table, names in CONTRACT.items() for name in names.split())]
+    tables = dict(CONTRACT) | {"shafts.NAME": SHAFT, "meshes.NAME": f"{MESH} {CONTRACT['mesh']}"}
+    tables |= {f"meshes.NAME.{table}": CONTRACT[table] for table in ("coating", "surface")}
+    expected = ["name", *(f"{table}.{name}" for table, names in tables.items() for name in names.split())]
     assert sorted(info.key for info in keys) == sorted(expected)
     for info in keys:
         assert info.description, info.key

@@ -11,6 +11,7 @@ import pytest
 import gearidae as gd
 from gearidae.cli import main
 from gearidae.scene import PRESETS, Scene, dump_case
+from gearidae.scene.named_tables import NAME
 
 SCHEMA = Scene.json_schema()
 
@@ -30,6 +31,9 @@ def at(key):
     node = SCHEMA
     for part in key.split("."):
         node = resolve(node)
+        if part == NAME:
+            node = node["additionalProperties"]
+            continue
         if "anyOf" in node and "properties" not in node:
             node = next(resolve(branch) for branch in node["anyOf"] if "$ref" in branch)
         node = node["properties"][part]
@@ -38,6 +42,9 @@ def at(key):
 
 @pytest.mark.parametrize("info", gd.describe_keys(), ids=lambda info: info.key)
 def test_every_key_has_its_meaning_unit_and_limits(info):
+    if info.key.endswith(f"gears.{NAME}"):
+        assert at(info.key) == {"type": "integer", "minimum": 3, "maximum": 10_000}
+        return
     node = at(info.key)
     assert node["description"] == info.description
     if info.unit and "." in info.key and not info.allowed.startswith(("a whole", "a list", "a table")):
@@ -62,10 +69,12 @@ def test_no_key_is_described_that_scenes_do_not_know():
             yield from keys(resolve(inner), f"{prefix}{name}.")
             for branch in inner.get("anyOf", []):
                 yield from keys(resolve(branch), f"{prefix}{name}.") if "$ref" in branch else ()
+            if "$ref" in (entry := inner.get("additionalProperties") or {}):
+                yield from keys(resolve(entry), f"{prefix}{name}.{NAME}.")
 
     described = {key for key, _ in keys(SCHEMA, "")}
     tables = set(Scene.model_fields)
-    assert described - tables - {"$schema"} == known - tables
+    assert described - tables - {"$schema"} == known - tables - {"shafts.NAME.gears.NAME"}
     for name, definition in SCHEMA[
         "$defs"
     ].items():  # a torque law's parameters have the names that it gives them
@@ -73,8 +82,9 @@ def test_no_key_is_described_that_scenes_do_not_know():
 
 
 def test_a_scene_has_gears_or_a_roller():
-    gears, roller = SCHEMA["oneOf"]
+    gears, train, roller = SCHEMA["oneOf"]
     assert set(gears["required"]) == {"gears", "mesh", "drive", "initial"}
+    assert set(train["required"]) == {"shafts", "meshes", "drive", "initial"}
     assert roller["required"] == ["roller"]
     assert set(SCHEMA["required"]) == {"surface", "run"}
 

@@ -30,6 +30,7 @@ from gearidae.records import ROWS, Solution, Statistics
 from gearidae.scene import Scene, describe_keys
 from gearidae.scene.differences import first_difference
 from gearidae.scene.keys import scene_value
+from gearidae.scene.named_tables import NAME
 
 
 def concat(datasets: Iterable[xr.Dataset] | Mapping[str, xr.Dataset], dim: str) -> xr.Dataset:
@@ -138,7 +139,7 @@ def _differing(parts: Sequence[xr.Dataset]) -> Axis:
 
 def _key_of(parts: Sequence[xr.Dataset], dim: str) -> str:
     """Find the key that a dimension is named after."""
-    known = [info.key for info in describe_keys()]
+    known = [info.key for info in describe_keys() if NAME not in info.key]
     swept = [key for part in parts for axis in _own_axes(part) for key in axis]
     candidates = [dim] if dim in (*known, *swept) else []
     for key in (*swept, *known):

@@ -140,7 +140,12 @@ def _balance(
     return 2.0 * surplus / slope if slope > 0.0 else math.inf
 
 
-def _over_run(scene: GearScene, constant: float, knots: Sequence[tuple[float, float]]) -> Floats:
+def mean_over_run(scene: Scene, constant: float, knots: Sequence[tuple[float, float]]) -> float:
+    """Mean size of a constant plus a schedule over the run."""
+    return _mean_size(_over_run(scene, constant, knots))
+
+
+def _over_run(scene: Scene, constant: float, knots: Sequence[tuple[float, float]]) -> Floats:
     """Return a constant plus a schedule at even times of the run; cubics are taken for straight lines."""
     if not knots:
         return np.array([constant])

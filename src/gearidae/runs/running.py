@@ -16,7 +16,7 @@ import numpy as np
 from gearidae.errors import SceneError, SolverError
 from gearidae.records import Block, EventKind, Events, Flank, Solution, Statistics
 from gearidae.records.standing import Holding
-from gearidae.scene import Scene
+from gearidae.scene import Scene, TrainScene, require_gears
 from gearidae.scene.prefixes import with_prefix
 
 if TYPE_CHECKING:
@@ -72,6 +72,8 @@ def prepare(
         raise SceneError(
             "scene", type(scene).__name__, "must be a Scene (from load_case, preset or Scene.from_dict)"
         )
+    if isinstance(scene, TrainScene):
+        scene = require_gears(scene)  # type: ignore[assignment]  # one mesh: the same model as a pair
     _require_memory()
     from gearidae import engine  # what reads results does without it
 

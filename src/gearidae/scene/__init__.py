@@ -8,7 +8,16 @@ from gearidae.scene.keys import KeyInfo
 from gearidae.scene.knots import Knots
 from gearidae.scene.presets import PRESETS, preset
 from gearidae.scene.run import Initial, Roller, Run
-from gearidae.scene.scene import GearScene, RollerScene, Scene, describe_key, describe_keys, require_gears
+from gearidae.scene.scene import (
+    GearScene,
+    RollerScene,
+    Scene,
+    TrainScene,
+    describe_key,
+    describe_keys,
+    require_gears,
+)
+from gearidae.scene.shafts import Meshing, Shaft
 from gearidae.scene.shown import differences, nearest_preset
 from gearidae.scene.surface import Contact, Surface
 from gearidae.scene.torque import Drive, Harmonic, Load
@@ -28,12 +37,15 @@ __all__ = [
     "Load",
     "Material",
     "Mesh",
+    "Meshing",
     "Roller",
     "RollerScene",
     "Run",
     "Scene",
+    "Shaft",
     "StaticErrorHarmonic",
     "Surface",
+    "TrainScene",
     "describe_key",
     "describe_keys",
     "differences",

@@ -137,6 +137,8 @@ def check_tables(scene: Scene) -> None:
     SceneError
         Naming ``coating.pinion_table`` or ``coating.gear_table``.
     """
+    if scene.gears is None and scene.roller is None:
+        return  # each mesh of a train is checked as a pair
     for side in ("pinion", "gear"):
         table: Any = getattr(scene.coating, f"{side}_table")
         if not table:

@@ -14,6 +14,7 @@ from gearidae.scene.asperity_list import ListedAsperities
 from gearidae.scene.group import Group
 from gearidae.scene.keys import keys_of
 from gearidae.scene.knots import Knots
+from gearidae.scene.named_tables import NamedTables
 from gearidae.scene.quantity import Quantity
 from gearidae.scene.roughnesses import InRoughnesses
 from gearidae.scene.scene import Scene
@@ -37,8 +38,12 @@ def dump_case(scene: Scene, *, every_key: bool = False) -> str:
         TOML; `load_case` makes an equal scene of it, to the last bit.
     """
     lines = [f"name = {_text(scene.name)}"]
-    for table in Scene.model_fields:
-        group = getattr(scene, table)
+    for table, group in scene:
+        if isinstance(group, NamedTables):
+            for name, entry in group.items():
+                lines += ["", f"[{table}.{name}]", *_table(entry)]
+                for key in type(entry).model_fields:
+                    lines += _list_of_tables(f"{table}.{name}", key, entry, every_key=False)
         if isinstance(group, Group):
             description = Scene.model_fields[table].description
             lines += ["", f"[{table}]  # {description}", *_table(group, table if every_key else "")]
@@ -94,6 +99,10 @@ def _table(group: Group, absent_in: str = "") -> Iterator[str]:
                 entries.append((f"{name} = {_rows(value)}", field.description))
             continue
         if value is None:
+            continue
+        if isinstance(value, NamedTables):
+            numbers = ", ".join(f"{key} = {number}" for key, number in value.items())
+            entries.append((f"{name} = {{ {numbers} }}", field.description))
             continue
         if isinstance(value, Group):
             entries.append((f"{name} = {_inline(value)}", field.description))
@@ -157,7 +166,9 @@ def _inline(group: Group) -> str:
     """Write a small table in one line, without empty lists."""
     fields = [*((name, getattr(group, name)) for name in type(group).model_fields)]
     fields += (group.model_extra or {}).items()
-    return f"{{ {', '.join(f'{name} = {_plain(value)}' for name, value in fields if value != ())} }}"
+    return (
+        f"{{ {', '.join(f'{name} = {_plain(value)}' for name, value in fields if value not in ((), None))} }}"
+    )
 
 
 def _plain(value: Any) -> str:

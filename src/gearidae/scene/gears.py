@@ -172,6 +172,18 @@ class Mesh(Group):
         default=True,
         description="whether the changing radius of curvature pushes the gear, so that energy is conserved",
     )
+    module: Annotated[float | None, Quantity(unit="m", at_least=1e-9, at_most=1, shown=("um", -6))] = Field(
+        default=None, description="module of the gears of a train"
+    )
+    driver_base_radius: Annotated[
+        float | None, Quantity(unit="m", at_least=1e-8, at_most=1, shown=("um", -6))
+    ] = Field(default=None, description="base radius of a train's driving gear, in place of the module")
+    pressure_angle: Annotated[float | None, Quantity(unit="rad", above=0, below=1.5)] = Field(
+        default=None, description="pressure angle at the pitch circle of the gears of a train"
+    )
+    face_width: Annotated[float | None, Quantity(unit="m", at_least=1e-10, at_most=1, shown=("um", -6))] = (
+        Field(default=None, description="width of the teeth of a train along the axis")
+    )
 
     @model_validator(mode="after")
     def _film_has_a_height(self) -> Mesh:

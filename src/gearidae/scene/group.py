@@ -153,5 +153,12 @@ def _complaints(error: ValidationError) -> Iterator[tuple[str, object, str]]:
 
 def _description(title: str, name: str) -> str:
     """Look up what a field of the table class `title` means."""
-    model = next(model for model in Group.__subclasses__() if model.__name__ == title)
+    model = next(model for model in _tables_of(Group) if model.__name__ == title)
     return model.model_fields[name].description or name
+
+
+def _tables_of(base: type[Group]) -> Iterator[type[Group]]:
+    """Yield every class of tables."""
+    for table in base.__subclasses__():
+        yield table
+        yield from _tables_of(table)

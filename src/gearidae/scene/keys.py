@@ -7,13 +7,14 @@ from collections.abc import Iterator
 from copy import deepcopy
 from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING, Any, Final, get_args
+from typing import TYPE_CHECKING, Any, Final, get_args, get_origin
 
 from pydantic.fields import FieldInfo
 
 from gearidae.errors import SceneError
 from gearidae.scene.group import Group, did_you_mean, shorten
 from gearidae.scene.named import Named
+from gearidae.scene.named_tables import NAME, NamedTables
 from gearidae.scene.quantity import Count, Quantity
 
 if TYPE_CHECKING:
@@ -35,7 +36,8 @@ class KeyInfo:
     Attributes
     ----------
     key : str
-        Dotted name; entries of a list of tables go without their number (``drive.harmonic.amplitude``).
+        Dotted name; entries of a list of tables go without their number (``drive.harmonic.amplitude``), and ``NAME``
+        stands for a name of the user's own (``shafts.NAME.inertia``).
     unit : str
         SI unit, ``"1"`` for pure numbers and counts, empty for texts and lists.
     required : bool
@@ -74,13 +76,42 @@ def find_key(model: type[Group], key: str, value: object = "(key)") -> KeyInfo:
         raise SceneError(
             str(shorten(key)), shorten(value), "is no key; a key is a short text, such as run.duration"
         )
-    plain = ".".join(part for part in key.split(".") if not part.isdecimal())
+    plain = _plain(model, key)
     known = {info.key: info for info in keys_of(model)}
     if plain not in known and (info := _open_key(model, plain)) is not None:
         return info
     if plain not in known:
-        raise SceneError(str(shorten(key)), shorten(value), _unknown(key, [*known, *model.model_fields]))
+        names = plain != key and NAME in plain.split(".")
+        alike = [name for name in known if (NAME in name.split(".")) == names]
+        said = _unknown(plain if names else key, [*alike, *model.model_fields])
+        raise SceneError(
+            str(shorten(key)), shorten(value), said.replace(NAME, key.split(".")[1]) if names else said
+        )
     return known[plain]
+
+
+def _plain(model: type[Group], key: str) -> str:
+    """Write a key as the list of all keys has it: without numbers of list entries, NAME for names of tables."""
+    parts: list[str] = []
+    inside: Any = model
+    for part in key.split("."):
+        if (named := _named(inside)) is not None:
+            parts.append(NAME)
+            inside = named
+        elif not part.isdecimal():
+            parts.append(part)
+            table = inside if inside is model else _table(inside)[0]
+            field = table.model_fields.get(part) if table else None
+            inside = field.annotation if field else None
+    return ".".join(parts)
+
+
+def _named(annotation: Any) -> Any:
+    """Find what a field holds by names of the user's own; None where it is something else."""
+    for inner in (annotation, *get_args(annotation)):
+        if get_origin(inner) is NamedTables:
+            return get_args(inner)[0]
+    return None
 
 
 def _open_key(model: type[Group], key: str) -> KeyInfo | None:
@@ -129,7 +160,9 @@ def put(model: type[Group], data: dict[str, Any], key: str, value: object) -> No
     info = find_key(model, key, value)
     *path, last = key.split(".")
     inside: Any = data
-    for part in path:
+    for depth, part in enumerate(path):
+        if depth > 1 and isinstance(inside, dict) and not _is_nothing(value):
+            inside.setdefault(part, {})  # a table in one of a train's, of keys that need not be given
         inside = _entry(inside, part)
     if isinstance(inside, list) and len(inside) == 1 and not last.isdecimal():
         inside = inside[0]
@@ -174,6 +207,13 @@ def _walk(model: type[Group], prefix: str) -> Iterator[KeyInfo]:
     for name, field in model.model_fields.items():
         key = f"{prefix}{name}"
         table, is_list = _table(field.annotation)
+        if (named := _named(field.annotation)) is not None:
+            if prefix:
+                yield _describe(key, field)
+                yield _describe(f"{key}.{NAME}", FieldInfo.from_annotation(named), field)
+            else:
+                yield from _walk(named, f"{key}.{NAME}.")
+            continue
         if table is None or is_list or prefix:  # tables of the scene itself are no keys
             yield _describe(key, field)
         if table is not None:
@@ -184,13 +224,16 @@ def _table(annotation: Any) -> tuple[type[Group] | None, bool]:
     """Find the model that a field holds, alone or in a list."""
     if isinstance(annotation, type) and issubclass(annotation, Group):
         return annotation, False
-    for inner in get_args(annotation):
-        if isinstance(inner, type) and issubclass(inner, Group):
-            return inner, Ellipsis in get_args(annotation)
+    if get_origin(annotation) is not NamedTables:
+        for inner in get_args(annotation):
+            table, is_list = _table(inner)
+            if table is not None:
+                return table, is_list or Ellipsis in get_args(annotation)
     return None, False
 
 
-def _describe(key: str, field: FieldInfo) -> KeyInfo:
+def _describe(key: str, field: FieldInfo, within: FieldInfo | None = None) -> KeyInfo:
+    """Describe a field, or an entry of the numbers that another holds by names."""
     number = next((entry for entry in field.metadata if isinstance(entry, (Quantity, Count))), None)
     named = next((entry for entry in field.metadata if isinstance(entry, Named)), None)
     args = get_args(field.annotation)
@@ -203,17 +246,19 @@ def _describe(key: str, field: FieldInfo) -> KeyInfo:
         allowed = "one of " + ", ".join(choices)
     elif field.annotation is bool:
         allowed = "true or false"
-    elif _table(field.annotation)[0] is not None and not _table(field.annotation)[1]:
+    elif _named(field.annotation) or (
+        _table(field.annotation)[0] is not None and not _table(field.annotation)[1]
+    ):
         allowed = "a table"
     else:
-        allowed = "a text" if field.annotation is str else "a list"
+        allowed = "a text" if str in (field.annotation, *args) else "a list"
     return KeyInfo(
         key=key,
         unit=number.unit if isinstance(number, Quantity) else "1" if number else "",
-        required=field.is_required(),
-        default=None if field.is_required() else () if field.default is None else field.default,
+        required=field.is_required() and within is None,
+        default=() if within or field.default is None else None if field.is_required() else field.default,
         allowed=allowed,
-        description=field.description or "",
+        description=(within or field).description or "",
     )
 
 

@@ -24,16 +24,21 @@ from gearidae.scene.limits import (
     check_stretch,
     check_thickness,
 )
+from gearidae.scene.named_tables import NAME, NamedTables
 from gearidae.scene.roughnesses import InRoughnesses
 from gearidae.scene.run import Initial, Roller, Run
 from gearidae.scene.schema import json_schema
+from gearidae.scene.shafts import Meshing, Shaft
 from gearidae.scene.showing import as_html, as_line
 from gearidae.scene.strip import check_population
 from gearidae.scene.surface import Contact, Surface
 from gearidae.scene.surface_library import library_changes, with_library
 from gearidae.scene.torque import Drive, Load
+from gearidae.scene.train import Train, pair_meshes, pair_shafts, train_of
+from gearidae.scene.train_pair import check_train, pair_of
 
-_GEAR_TABLES = ("gears", "mesh", "drive", "load", "initial")
+_GEAR_TABLES = ("gears", "shafts", "meshes", "mesh", "drive", "load", "initial")
+_OF_A_TRAIN = ("module", "driver_base_radius", "pressure_angle", "face_width")
 _MOST_PLACES = 20_000  # on all teeth of the pinion: exposures are part of every checkpoint
 _NOTHING_IF_EMPTY = (
     ("drive", "schedule"),
@@ -53,17 +58,22 @@ def _named(value: object) -> str:
 
 
 class Scene(Group):
-    """A gear pair, or a roller, ready to be run: a `GearScene` or a `RollerScene`. All quantities are SI floats.
+    """A gear pair, a train or a roller: a `GearScene`, a `TrainScene` or a `RollerScene`. All quantities are SI floats.
 
-    Give ``gears``, ``mesh``, ``drive`` and ``initial`` (``load`` if there is one), or ``roller`` in their
-    place; ``surface`` and ``run`` always. Numbers are SI; texts carry their unit ("34.715 um").
+    Give ``gears``, ``mesh``, ``drive`` and ``initial`` (``load`` if there is one), for a train ``shafts`` and
+    ``meshes`` in place of ``gears``, or ``roller`` in place of all; ``surface`` and ``run`` always. Numbers are SI;
+    texts carry their unit ("34.715 um").
 
     Attributes
     ----------
     name : str
         What the scene is called in titles.
     gears, mesh, drive, load, initial : Gears, Mesh, Drive, Load, Initial or None
-        The gear pair; None in a scene with a roller.
+        The gear pair; None in a scene with a roller. In a train ``gears`` is None, and ``mesh`` has the keys that all
+        its meshes share.
+    shafts, meshes : mapping of str to Shaft, of str to Meshing, or None
+        The train, by the names of its shafts and meshes; a pair has the shafts ``pinion`` and ``gear`` and the mesh
+        ``mesh``. None in a scene with a roller.
     roller : Roller or None
         The roller; None in a scene with gears.
     surface, coating, contact : Surface, Coating, Contact
@@ -89,6 +99,10 @@ class Scene(Group):
         default="scene", description="what the scene is called"
     )
     gears: Gears | None = Field(default=None, description="the two gears")
+    shafts: NamedTables[Shaft] | None = Field(
+        default=None, description="the shafts of a train, in place of gears"
+    )
+    meshes: NamedTables[Meshing] | None = Field(default=None, description="the meshes of a train")
     mesh: Mesh | None = Field(default=None, description="how their teeth meet")
     drive: Drive | None = Field(default=None, description="torque on the pinion")
     load: Load | None = Field(default=None, description="torque that resists the gear")
@@ -103,13 +117,17 @@ class Scene(Group):
         """Make a scene of the kind that its tables say."""
         if cls is not Scene:
             return super().__new__(cls)
-        return super().__new__(GearScene if data.get("roller") is None else RollerScene)  # type: ignore[return-value]
+        kind: type[Scene] = GearScene if data.get("roller") is None else RollerScene
+        if data.get("gears") is None and any(data.get(table) is not None for table in ("shafts", "meshes")):
+            kind = TrainScene
+        return super().__new__(kind)  # type: ignore[return-value]
 
     @model_validator(mode="before")
     @classmethod
     def _no_load(cls, data: Any) -> Any:
         """Let gears run free where no load is given."""
-        if isinstance(data, dict) and data.get("gears") is not None and data.get("load") is None:
+        turns = isinstance(data, dict) and (data.get("gears") is not None or data.get("shafts") is not None)
+        if turns and data.get("load") is None:
             return {**data, "load": Load()}
         return data
 
@@ -162,6 +180,19 @@ class Scene(Group):
         except GeometryError as error:
             key = error.parameter
             raise SceneError(f"gears.{key}", getattr(gears, key), error.reason) from error
+
+    @property
+    def train(self) -> Train:
+        """Shafts and meshes in their places: senses, ratios, centres, phases, loops; of a pair, too.
+
+        Raises
+        ------
+        SceneError
+            If the scene has none.
+        """
+        if self.shafts is None or self.meshes is None:
+            raise SceneError("shafts", "(missing)", "a scene with a roller has no train")
+        return train_of(self)
 
     @property
     def coated_surface(self) -> Surface:
@@ -292,7 +323,8 @@ class Scene(Group):
     @classmethod
     def _elsewhere(cls, name: str) -> list[str]:
         """Return the keys of this name in all tables."""
-        return [info.key for info in describe_keys() if info.key.rpartition(".")[2] == name]
+        keys = [info.key for info in describe_keys() if NAME not in info.key]
+        return [key for key in keys if key.rpartition(".")[2] == name]
 
 
 class GearScene(Scene):
@@ -310,6 +342,17 @@ class GearScene(Scene):
         for table in ("gears", "mesh", "drive", "initial"):
             if getattr(self, table) is None:
                 raise SceneError(table, "(missing)", "is required in a scene without a roller")
+        for table, value in self:
+            if table in ("shafts", "meshes") and value is not None:
+                raise SceneError(table, "(given)", "a scene has gears or shafts and meshes, not both")
+        for key in _OF_A_TRAIN:
+            if getattr(self.mesh, key) is not None:
+                raise SceneError(
+                    f"mesh.{key}", getattr(self.mesh, key), "is of a train; of a pair it stands in gears"
+                )
+        for key, name in (("drive", self.drive.shaft), ("load", self.load.shaft)):
+            if name is not None:
+                raise SceneError(f"{key}.shaft", name, "is of a train: pinion and gear have drive and load")
         gears, mesh, geometry = self.gears, self.mesh, self.geometry
         if mesh.backlash >= geometry.base_pitch / 2:
             allowed = f"must be below half a base pitch, {geometry.base_pitch / 2:.4g} m"
@@ -341,6 +384,62 @@ class GearScene(Scene):
         check_joints(self)
 
 
+def _shafts(scene: Scene) -> NamedTables[Shaft]:
+    assert scene.gears is not None
+    return pair_shafts(scene.gears)
+
+
+def _meshes(scene: Scene) -> NamedTables[Meshing]:
+    assert scene.gears is not None
+    assert scene.mesh is not None
+    return pair_meshes(scene.gears, scene.mesh)
+
+
+# The fields hold what a case file gives, which is nothing for a pair: a pair derives them from its gears.
+GearScene.shafts = property(_shafts)  # type: ignore[assignment]
+GearScene.meshes = property(_meshes)  # type: ignore[assignment]
+
+
+class TrainScene(Scene):
+    """A scene with shafts and meshes."""
+
+    if TYPE_CHECKING:
+        shafts: NamedTables[Shaft]
+        meshes: NamedTables[Meshing]
+        drive: Drive
+        load: Load
+        initial: Initial
+
+    def _check_bodies(self) -> None:
+        """Refuse trains that lack a table, cannot turn or cannot be computed."""
+        for table in ("shafts", "meshes", "drive", "initial"):
+            if getattr(self, table) is None:
+                raise SceneError(table, "(missing)", "is required in a scene with shafts and meshes")
+        if self.roller is not None:
+            raise SceneError("shafts", "(given)", "a scene has a roller or shafts, not both")
+        check_train(self)
+
+    def pair(self, name: str) -> GearScene:
+        """Return one mesh as a pair of gears, with its own tables, and what drives and loads the pair's two shafts.
+
+        Parameters
+        ----------
+        name : str
+            Of the mesh.
+
+        Returns
+        -------
+        Scene
+            Of a train with one mesh, its short form, whose runs have the same numbers.
+
+        Raises
+        ------
+        SceneError
+            If there is no such mesh, or what the train has does not stand in a pair.
+        """
+        return pair_of(self, name)
+
+
 class RollerScene(Scene):
     """A scene with a roller."""
 
@@ -364,13 +463,21 @@ class RollerScene(Scene):
 
 
 def require_gears(scene: Scene) -> GearScene:
-    """Refuse anything but a scene with gears, which is returned.
+    """Refuse anything but a scene with a pair of gears, which is returned; of a train with one mesh the short form.
 
     Raises
     ------
     SceneError
         If it is something else.
     """
+    if isinstance(scene, TrainScene):
+        if len(scene.meshes) > 1:
+            raise SceneError(
+                "meshes",
+                f"({len(scene.meshes)} meshes)",
+                "must be one: trains of several are laid out and checked, and not yet run; scene.pair(NAME) is a stage",
+            )
+        return scene.pair(next(iter(scene.meshes)))
     if not isinstance(scene, GearScene):
         raise SceneError("scene", getattr(scene, "name", type(scene).__name__), "must be a scene with gears")
     return scene

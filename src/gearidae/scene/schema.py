@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 _GEAR_TABLES = ("gears", "mesh", "drive", "initial")
+_TRAIN_TABLES = ("shafts", "meshes")
 
 
 class _Schema(GenerateJsonSchema):
@@ -45,15 +46,17 @@ def json_schema(model: type[Scene]) -> dict[str, Any]:
         "$schema": DIALECT,
         **schema,
         "title": "gearidae case file",
-        "description": "One scene: a pair of gears, or a roller in their place. Numbers are in SI units.",
+        "description": "One scene: a pair of gears, a train of shafts, or a roller. Numbers are in SI units.",
         "oneOf": [
-            {"required": list(_GEAR_TABLES), "not": {"required": ["roller"]}},
-            {
-                "required": ["roller"],
-                "not": {"anyOf": [{"required": [table]} for table in (*_GEAR_TABLES, "load")]},
-            },
+            {"required": list(_GEAR_TABLES), "not": _any_of("roller", *_TRAIN_TABLES)},
+            {"required": [*_TRAIN_TABLES, "drive", "initial"], "not": _any_of("roller", "gears")},
+            {"required": ["roller"], "not": _any_of(*_GEAR_TABLES, *_TRAIN_TABLES, "load")},
         ],
     }
+
+
+def _any_of(*tables: str) -> dict[str, Any]:
+    return {"anyOf": [{"required": [table]} for table in tables]}
 
 
 def _named_surfaces() -> dict[str, Any]:

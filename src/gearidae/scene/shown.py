@@ -32,8 +32,9 @@ def _line(scene: Scene) -> str:
     gears, roller = scene.gears, scene.roller
     if gears is not None:
         what = f"gears {gears.pinion_teeth}:{gears.gear_teeth}"
+    elif roller is None:
+        what = f"train of {len(scene.train.shafts)} shafts, {len(scene.train.meshes)} meshes"
     else:
-        assert roller is not None
         what = f"roller of {with_prefix(roller.radius, 'm')}"
     parts = [what, f"SAM {_covered(scene)} %", with_prefix(scene.run.duration, "s")]
     name = nearest_preset(scene)
@@ -108,6 +109,8 @@ def nearest_preset(scene: Scene) -> str:
     str
         The preset of the scene's own name, if there is one of the same kind.
     """
+    if scene.gears is None and scene.roller is None:
+        return ""  # a train
     same = [name for name in PRESETS if ("roller" in PRESETS[name]) == (scene.roller is not None)]
     if scene.name in same:
         return scene.name

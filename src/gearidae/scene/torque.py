@@ -171,6 +171,7 @@ class Law(Group):
 class Drive(Group):
     """Torque on the pinion, M1."""
 
+    shaft: str | None = Field(default=None, description="shaft of a train that is driven; default the first")
     torque: Torque = Field(default=0.0, description="constant part, M10")
     harmonic: Harmonics = Field(default=(), description="harmonic part, a table or a list of tables")
     schedule: Schedule = Field(default=Knots(), description=_SCHEDULE)
@@ -211,6 +212,7 @@ class Drive(Group):
 class Load(Group):
     """Torque that resists the gear, M2."""
 
+    shaft: str | None = Field(default=None, description="shaft of a train that is loaded; default the last")
     torque: Resistance = Field(default=0.0, description="dry resistance against the motion, M20")
     harmonic: Harmonics = Field(
         default=(),

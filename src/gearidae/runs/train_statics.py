@@ -1,0 +1,293 @@
+"""What can be said of a train on paper: forces of its meshes, loads of its hubs, its modes, the torque that starts it.
+
+Forces are those of steady motion without friction under the mean drive, by the balance of each shaft,
+
+    sum over meshes that drive it: R_b F  -  sum over those that it drives: R_a F  =  torque that resists it,
+
+with the compliance of the contacts where shafts share their load in a loop. A mesh pushes its driven gear along
+``n = rot(theta) (sin alpha, s cos alpha)``, with the sense s of its driver; hubs carry the vector sum.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from gearidae.arrays import Floats
+from gearidae.mesh.involute import curvature_radii, separation
+from gearidae.mesh.pair_contact import PairContact, pair_contact
+from gearidae.runs.estimates import mean_over_run
+from gearidae.scene import TrainScene
+from gearidae.scene.train import Train, TrainMesh
+
+_NEWTON: Final = 200
+_LONGEST: Final = 0.5
+"""Longest step of Newton's iteration in roughnesses: the force of a contact grows e-fold over a quarter of one."""
+_BALANCED: Final = 1e-12
+"""Error of the balance over the drive's torque at which the iteration ends."""
+
+
+def levers(train: Train) -> Floats:
+    """Change of each mesh's transmission error with the angle of each shaft, shape (meshes, shafts) [m]."""
+    arms = np.zeros((len(train.meshes), len(train.shafts)))
+    for row, mesh in zip(arms, train.meshes, strict=True):
+        row[mesh.a] = mesh.geometry.base_radius_pinion
+        row[mesh.b] = -mesh.geometry.base_radius_gear
+    return arms
+
+
+def ratios(train: Train) -> Floats:
+    """Speeds of the shafts over that of the drive's."""
+    return np.array([float(shaft.ratio) for shaft in train.shafts])
+
+
+def steady_speed(scene: TrainScene) -> float:
+    """Speed of the drive's shaft [rad/s] at which the mean torques balance without friction.
+
+    Returns
+    -------
+    float
+        0 if the drive does not overcome the dry resistance, infinite if nothing slows the train down.
+    """
+    drive, ratio = scene.drive, ratios(scene.train)
+    dry, viscous, drag = _resistances(scene)
+    linear = float(viscous @ ratio**2) + drive.speed_gain
+    surplus = _own_torque(scene) - float(dry @ ratio)
+    surplus += drive.speed_gain * mean_over_run(scene, 0.0, drive.speed_knots())
+    if surplus <= 0.0:
+        return 0.0
+    slowing = linear + math.sqrt(linear**2 + 4.0 * float(drag @ ratio**3) * surplus)
+    return 2.0 * surplus / slowing if slowing > 0.0 else math.inf
+
+
+def _own_torque(scene: TrainScene) -> float:
+    return mean_over_run(scene, scene.drive.torque, scene.drive.schedule)
+
+
+def _resistances(scene: TrainScene) -> tuple[Floats, Floats, Floats]:
+    """Dry resistance, viscous and quadratic drag of each shaft."""
+    shafts = scene.shafts.values()
+    dry, viscous, drag = (
+        np.array([getattr(shaft, key) for shaft in shafts]) for key in ("resistance", "viscous", "drag")
+    )
+    load, number = scene.load, scene.train.load
+    dry[number] += mean_over_run(scene, load.torque, load.schedule)
+    viscous[number] += load.viscous
+    drag[number] += load.drag
+    return dry, viscous, drag
+
+
+def resisting_torques(scene: TrainScene) -> tuple[float, Floats]:
+    """Mean torque of the drive [N m], and the torques that balance it on all shafts [N m].
+
+    What resists at the steady speed; while the train stands, dry resistances in proportion; where nothing resists, the
+    inertias of a train that speeds up. Of a drive with a law or a held speed what the load takes, at the initial speed.
+    """
+    drive, train = scene.drive, scene.train
+    ratio = ratios(train)
+    dry, viscous, drag = _resistances(scene)
+    speed = steady_speed(scene)
+    if drive.law is not None:
+        speed = abs(scene.initial.gear_speed) / float(train.shafts[train.load].ratio)
+    turning = speed if math.isfinite(speed) else 0.0
+    taken = dry + viscous * ratio * turning + drag * (ratio * turning) ** 2
+    torque = _own_torque(scene)
+    if drive.law is not None or drive.speed is not None:
+        return max(float(taken @ ratio), torque * (drive.speed is None)), taken
+    if not np.any(taken):
+        taken = np.array([shaft.inertia for shaft in train.shafts]) * ratio
+    return torque, taken * (torque / float(taken @ ratio))
+
+
+def mesh_forces(scene: TrainScene) -> Floats:
+    """Forces of the meshes [N] under the mean drive, at the phases of the start where a loop shares its load."""
+    train = scene.train
+    torque, taken = resisting_torques(scene)
+    arms, outside = levers(train), -taken
+    outside[train.drive] += torque
+    # what every shaft is short of is what its meshes have to give; the equations add up to 0 by the ratios
+    if len(train.meshes) == len(train.shafts) - 1:
+        return np.asarray(np.linalg.lstsq(arms.T, outside, rcond=None)[0])
+    return _shared(scene, arms, outside, torque)
+
+
+def _shared(scene: TrainScene, arms: Floats, outside: Floats, torque: float) -> Floats:
+    """Forces of a train with loops: angles of the shafts at which the contacts balance all torques, by Newton."""
+    train = scene.train
+    contacts = [_Mesh(scene, mesh) for mesh in train.meshes]
+    sigma = np.array([mesh.surface.roughness for mesh in train.meshes])
+    offset = np.array([mesh.offset for mesh in train.meshes])
+    guess = np.linalg.lstsq(arms.T, outside, rcond=None)[0]
+    least = 1e-3 * np.abs(guess).max()
+    start = [contact.error_at(max(force, least)) for contact, force in zip(contacts, guess, strict=True)]
+    free = [shaft for shaft in range(len(train.shafts)) if shaft != train.load]  # that of the load stands
+    arms, outside = arms[:, free], outside[free]
+    angles = np.linalg.lstsq(arms, np.array(start) + offset, rcond=None)[0]
+    for _ in range(_NEWTON):
+        errors = arms @ angles - offset
+        forces, stiffness = np.array([c.force(u) for c, u in zip(contacts, errors, strict=True)]).T
+        left = outside - arms.T @ forces
+        if np.abs(left).max() <= _BALANCED * abs(torque):
+            break
+        change = np.linalg.lstsq(arms.T @ (stiffness[:, None] * arms), left, rcond=1e-14)[0]
+        step = np.abs(arms @ change) / sigma
+        angles = angles + change * min(1.0, _LONGEST / max(step.max(), 1e-30))
+    return np.asarray(forces)
+
+
+class _Mesh:
+    """Drive flank of a mesh at the phase of the start, all pairs that are in reach."""
+
+    def __init__(self, scene: TrainScene, mesh: TrainMesh) -> None:
+        contact, geometry = pair_contact(scene.pair(mesh.name)), mesh.geometry
+        self.half, self.sigma = 0.5 * mesh.mesh.backlash, mesh.surface.roughness
+        first = mesh.phase - math.floor(mesh.phase) - 1.0
+        places = np.arange(first, geometry.contact_ratio + 1.0) * geometry.base_pitch
+        radii = curvature_radii(geometry, places)[2]
+        relief = separation(geometry, places, mesh.mesh.tip_relief_radius)[0]
+        # a pair that tip relief holds far off carries nothing
+        self.pairs: list[tuple[PairContact, float]] = [
+            (replace(contact, radius=float(radius)), float(away))
+            for radius, away in zip(radii, relief, strict=True)
+            if away < 30.0 * self.sigma
+        ]
+
+    def force(self, error: float) -> tuple[float, float]:
+        """Force [N] and stiffness [N/m] at a transmission error [m]."""
+        gaps = [(contact, self.half - error + away) for contact, away in self.pairs]
+        return (
+            sum(float(contact.force(gap)) for contact, gap in gaps),
+            sum(contact.stiffness(gap) for contact, gap in gaps),
+        )
+
+    def error_at(self, load: float) -> float:
+        """Transmission error [m] at which the nearest pair alone carries a load [N]."""
+        contact, away = min(self.pairs, key=lambda pair: pair[1])
+        return self.half + away - contact.resting_gap(load, 1e-6)
+
+
+def natural_frequencies(scene: TrainScene, forces: Floats) -> list[float]:
+    """Frequencies of small oscillations [Hz], rising, with one pair at the pitch point in every mesh that is pressed.
+
+    Square roots of the eigenvalues of ``J I^-1 J' K``, with the levers J, inertias I and stiffnesses K of the meshes.
+    """
+    train = scene.train
+    stiffness = np.zeros(len(train.meshes))
+    for number, (mesh, force) in enumerate(zip(train.meshes, forces, strict=True)):
+        contact = pair_contact(scene.pair(mesh.name))
+        gap = contact.resting_gap(float(force))
+        stiffness[number] = 0.0 if math.isnan(gap) else max(contact.stiffness(gap), 0.0)
+    scaled = levers(train) / np.sqrt([shaft.inertia for shaft in train.shafts])
+    roots = np.sqrt(stiffness)
+    squares = np.linalg.eigvalsh(roots[:, None] * (scaled @ scaled.T) * roots)
+    independent = len(train.shafts) - 1  # of more meshes the rest follow
+    pressed = min(independent, int(np.count_nonzero(stiffness)))
+    return [math.sqrt(max(square, 0.0)) / (2.0 * math.pi) for square in squares[len(squares) - pressed :]]
+
+
+def line_of_action(train: Train, mesh: TrainMesh) -> Floats:
+    """Direction in which a mesh pushes its driven gear on the drive flank, in the frame."""
+    alpha, sense = mesh.geometry.pressure_angle, train.shafts[mesh.a].sense
+    across, along = math.sin(alpha), sense * math.cos(alpha)
+    cosine, sine = math.cos(mesh.angle), math.sin(mesh.angle)
+    return np.array([cosine * across - sine * along, sine * across + cosine * along])
+
+
+def hub_loads(train: Train, forces: Floats) -> Floats:
+    """Vectors of what the meshes push on each shaft with, shape (shafts, 2) [N]."""
+    loads = np.zeros((len(train.shafts), 2))
+    for mesh, force in zip(train.meshes, forces, strict=True):
+        push = force * line_of_action(train, mesh)
+        loads[mesh.b] += push
+        loads[mesh.a] -= push
+    return loads
+
+
+def starting_torque(scene: TrainScene) -> tuple[float, Floats]:
+    """Torque of the drive that overcomes all dry loads and hubs, without adhesion of the teeth.
+
+    From the last shaft back to the drive, each is on the point of slipping,
+
+        R_b F = sum R_a F' + dry + mu [r (|F n - V| + A) + r_d P],
+
+    with the forces F' of the meshes that it drives and their vector sum V.
+
+    Returns
+    -------
+    torque : float
+        [N m]; infinite where a hub locks, NaN where a loop shares its load.
+    forces : ndarray, shape (meshes,)
+        [N].
+    """
+    train = scene.train
+    forces = np.full(len(train.meshes), math.nan)
+    if len(train.meshes) > len(train.shafts) - 1:
+        return math.nan, forces
+    dry = _resistances(scene)[0]
+    shafts = list(scene.shafts.values())
+    for number in reversed(_outwards(train)):
+        shaft = shafts[number]
+        driven = [k for k, mesh in enumerate(train.meshes) if mesh.a == number]
+        pushed = sum((forces[k] * line_of_action(train, train.meshes[k]) for k in driven), np.zeros(2))
+        constant = dry[number] + shaft.hub_friction * (
+            shaft.hub_radius * shaft.hub_adhesion + shaft.dimple_radius * shaft.axial_load
+        )
+        constant += sum(train.meshes[k].geometry.base_radius_pinion * forces[k] for k in driven)
+        arm = shaft.hub_friction * shaft.hub_radius
+        if number == train.drive:
+            return float(constant + arm * math.hypot(*pushed)), forces
+        mine = next(k for k, mesh in enumerate(train.meshes) if mesh.b == number)
+        mesh = train.meshes[mine]
+        forces[mine] = _slipping(
+            mesh.geometry.base_radius_gear, arm, constant, line_of_action(train, mesh), pushed
+        )
+        if math.isinf(forces[mine]):
+            return math.inf, forces
+    raise AssertionError("the drive's shaft is the first")
+
+
+def _outwards(train: Train) -> list[int]:
+    """Numbers of the shafts of a train without loops, each after the one that drives it."""
+    order = [train.drive]
+    for number in order:
+        order += [mesh.b for mesh in train.meshes if mesh.a == number]
+    return order
+
+
+def _slipping(radius: float, arm: float, constant: float, line: Floats, pushed: Floats) -> float:
+    """Smallest force F with ``R F = C + m |F n - V|``; infinite where there is none."""
+    square = radius**2 - arm**2
+    half = radius * constant - arm**2 * float(line @ pushed)
+    rest = constant**2 - arm**2 * float(pushed @ pushed)
+    root = half**2 - square * rest
+    if root < 0.0:
+        return math.inf
+    # the two roots without the difference of near numbers; only one has R F above C where the hub does not lock
+    large = half + math.copysign(math.sqrt(root), half)
+    candidates = [large / square if square != 0.0 else math.inf, rest / large if large != 0.0 else 0.0]
+    fitting = [force for force in candidates if radius * force >= constant * (1.0 - 1e-12)]
+    return min(fitting, default=math.inf)
+
+
+def overlapping(train: Train) -> Iterator[tuple[str, str]]:
+    """Yield the pairs of gears of different shafts without a mesh whose tip circles overlap."""
+    tips: dict[str, tuple[int, float]] = {}
+    for mesh in train.meshes:
+        geometry = mesh.geometry
+        for gear, shaft, base in (
+            (mesh.driver, mesh.a, geometry.base_radius_pinion),
+            (mesh.driven, mesh.b, geometry.base_radius_gear),
+        ):
+            tips[gear] = (shaft, base / math.cos(geometry.pressure_angle) + geometry.module)
+    met = {frozenset((mesh.driver, mesh.driven)) for mesh in train.meshes}
+    names = list(tips)
+    for number, first in enumerate(names):
+        for second in names[number + 1 :]:
+            (one, tip), (other, reach) = tips[first], tips[second]
+            away = math.dist(train.shafts[one].centre, train.shafts[other].centre)
+            if one != other and frozenset((first, second)) not in met and away < tip + reach:
+                yield first, second

@@ -1,0 +1,155 @@
+"""One mesh of a train as a pair of gears: what estimates are made for, and each mesh is checked by."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, Final
+
+from gearidae.errors import SceneError
+from gearidae.scene.friction import has_flank_friction
+from gearidae.scene.gears import Gears
+from gearidae.scene.torque import Drive, Load
+
+if TYPE_CHECKING:
+    from gearidae.scene.scene import GearScene, TrainScene
+    from gearidae.scene.shafts import Shaft
+    from gearidae.scene.train import TrainMesh
+
+_SIZES: Final = dict.fromkeys(("module", "driver_base_radius", "pressure_angle", "face_width"))
+_HUB_KEYS: Final = ("hub_radius", "hub_adhesion", "axial_load", "dimple_radius")
+
+
+@lru_cache(maxsize=64)
+def pair_of(scene: TrainScene, name: str) -> GearScene:
+    """Return one mesh of a train as a pair; see `TrainScene.pair`."""
+    from gearidae.scene.scene import GearScene
+
+    train, alone = scene.train, len(scene.meshes) == 1
+    mesh = train.mesh(name)
+    hubs = _hubs(scene, mesh) if alone else {}
+    drive, load = Drive(), Load()
+    if alone:
+        drive, load = _torques(scene, mesh)
+    try:
+        return GearScene(
+            name=scene.name,
+            gears=Gears(
+                pinion_inertia=train.shafts[mesh.a].inertia,
+                gear_inertia=train.shafts[mesh.b].inertia,
+                pinion_base_radius=mesh.geometry.base_radius_pinion,
+                pinion_teeth=mesh.geometry.pinion_teeth,
+                gear_teeth=mesh.geometry.gear_teeth,
+                pressure_angle=mesh.geometry.pressure_angle,
+                face_width=mesh.face_width,
+                **hubs,
+            ),
+            mesh=mesh.mesh.model_copy(update=_SIZES),
+            drive=drive,
+            load=load,
+            # an offset opens the gap; that of a mesh which closes a loop follows from the others
+            initial=scene.initial.model_copy(
+                update={
+                    "mesh_phase": mesh.phase,
+                    "gap": scene.initial.gap + (0.0 if mesh.closes else mesh.offset),
+                }
+            ),
+            surface=mesh.surface,
+            coating=mesh.coating,
+            contact=scene.contact,
+            run=scene.run,
+        )
+    except SceneError as error:
+        key = _train_key(mesh, error.key, [*scene.shafts])
+        raise SceneError(key, error.value, error.allowed) from error
+
+
+def _hubs(scene: TrainScene, mesh: TrainMesh) -> dict[str, Any]:
+    """Keys of both hubs; a pair has one coefficient of friction for both."""
+    names = [*scene.shafts]
+    keys: dict[str, Any] = {}
+    coefficients = {}
+    for side, number in (("pinion", mesh.a), ("gear", mesh.b)):
+        shaft = scene.shafts[names[number]]
+        keys |= {f"{side}_{key}": getattr(shaft, key) for key in _HUB_KEYS}
+        if _has_joint(shaft):
+            coefficients[names[number]] = shaft.hub_friction
+    if len(set(coefficients.values())) > 1:
+        name = names[mesh.b]
+        reason = f"must be that of the other shaft, {coefficients[names[mesh.a]]:g}, in a train of one mesh"
+        raise SceneError(f"shafts.{name}.hub_friction", coefficients[name], reason)
+    return keys | {"hub_friction": next(iter(coefficients.values()), 0.0)}
+
+
+def _has_joint(shaft: Shaft) -> bool:
+    return shaft.hub_radius > 0.0 or shaft.dimple_radius > 0.0
+
+
+def _torques(scene: TrainScene, mesh: TrainMesh) -> tuple[Drive, Load]:
+    """Drive and load of a train with one mesh, as those of its pair."""
+    train, names = scene.train, [*scene.shafts]
+    if train.load != mesh.b:
+        raise SceneError("load.shaft", names[train.load], f"must be {names[mesh.b]} in a train of one mesh")
+    for name, shaft in scene.shafts.items():
+        for key in ("resistance", "viscous", "drag"):
+            if getattr(shaft, key) > 0.0:
+                reason = "must be 0 in a train of one mesh, which has the constants of load alone"
+                raise SceneError(f"shafts.{name}.{key}", getattr(shaft, key), reason)
+    orientation = scene.drive.orientation - mesh.angle if scene.drive.law is not None else 0.0
+    return (
+        scene.drive.model_copy(update={"shaft": None, "orientation": orientation}),
+        scene.load.model_copy(update={"shaft": None}),
+    )
+
+
+def _train_key(mesh: TrainMesh, key: str, names: list[str]) -> str:
+    """Name the key of a train that a key of its pair comes from."""
+    table, _, last = key.partition(".")
+    if table in ("coating", "surface"):
+        return f"meshes.{mesh.name}.{key}"
+    if table == "gears":
+        side, _, rest = last.partition("_")
+        if side in ("pinion", "gear") and rest != "base_radius" and rest != "teeth":
+            return f"shafts.{names[mesh.a if side == 'pinion' else mesh.b]}.{rest}"
+        ends = {"pinion_teeth": "driver", "gear_teeth": "driven", "pinion_base_radius": "module"}
+        last = ends.get(last, last)
+    return f"meshes.{mesh.name}.{last}" if table in ("gears", "mesh") else key
+
+
+def check_train(scene: TrainScene) -> None:
+    """Refuse trains that cannot turn, meshes that could not run as pairs, and what several meshes cannot have.
+
+    Raises
+    ------
+    SceneError
+        Naming the key.
+    """
+    pairs = [pair_of(scene, mesh.name) for mesh in scene.train.meshes]
+    if len(pairs) == 1:
+        return
+    contact, run = scene.contact, scene.run
+    refused: list[tuple[bool, str, Any, str]] = [
+        (
+            contact.bodies == "elastic",
+            "contact.bodies",
+            contact.bodies,
+            "their nodes are laid out for one mesh",
+        ),
+        (
+            contact.is_discrete,
+            "contact.roughness",
+            contact.roughness,
+            "lists of asperities are those of one mesh",
+        ),
+        (run.exposures > 0, "run.exposures", run.exposures, "exposures are tables of one mesh"),
+    ]
+    for there, key, value, reason in refused:
+        if there:
+            raise SceneError(key, value, f"cannot be combined with several meshes: {reason}")
+    for mesh, pair in zip(scene.train.meshes, pairs, strict=True):
+        if has_flank_friction(pair):
+            reason = "rest would need the friction of all flanks at once"
+            raise SceneError(
+                "contact.friction",
+                contact.friction,
+                f"cannot be combined with several meshes ({mesh.name}): {reason}",
+            )
