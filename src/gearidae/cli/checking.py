@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gearidae.archive.variables import EVENTS
 from gearidae.cli.case import read_scene
 from gearidae.cli.codes import DONE
+from gearidae.cli.fact import Fact, Facts
 from gearidae.cli.machine import print_json
 from gearidae.cli.output import print_line, show_rows
 from gearidae.cli.tables import show_validity
@@ -19,7 +20,7 @@ from gearidae.progress import in_words
 from gearidae.runs.plausibility import doubts
 from gearidae.runs.run_time import run_time
 from gearidae.runs.validity import validity_rows
-from gearidae.scene import GearScene
+from gearidae.scene import GearScene, TrainScene, require_gears
 from gearidae.scene.friction import has_flank_friction
 from gearidae.scene.joints import has_joint_friction, has_pin
 from gearidae.scene.sampled import columns_of
@@ -27,29 +28,6 @@ from gearidae.scene.validity_row import contact_subject, mean_note
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
-
-
-class Fact(NamedTuple):
-    """A row of the table: for people a text with a remark, for programs a number [SI].
-
-    Attributes
-    ----------
-    name, text, remark : str
-        A row without a text is a heading.
-    number : float or tuple of float, optional
-        What the text says; several numbers where it says several, none where it is not known or no number.
-    unit : str, optional
-        Of the number.
-    """
-
-    name: str
-    text: str = ""
-    remark: str = ""
-    number: float | tuple[float, ...] | None = None
-    unit: str = ""
-
-
-Facts = Iterator[Fact]
 
 
 def check_case(case: str, settings: Sequence[str], *, as_json: bool = False) -> int:
@@ -75,6 +53,8 @@ def check_case(case: str, settings: Sequence[str], *, as_json: bool = False) -> 
         If the case is wrong.
     """
     scene = read_scene(case, settings)
+    if isinstance(scene, TrainScene) and len(scene.meshes) == 1:
+        scene = require_gears(scene)
     facts, rows, warnings = list(_facts(scene)), validity_rows(scene), list(doubts(scene))
     if as_json:
         print_json(
@@ -88,7 +68,8 @@ def check_case(case: str, settings: Sequence[str], *, as_json: bool = False) -> 
         )
         return DONE
     show_rows(fact[:3] for fact in facts)
-    show_validity(rows, about=contact_subject(roller=scene.roller is not None))
+    each = " in each mesh" * isinstance(scene, TrainScene)
+    show_validity(rows, about=contact_subject(roller=scene.roller is not None) + each)
     if scene.contact.is_discrete:
         print_line("A run is one specimen of this design: contact.seed numbers the others.")
     elif note := mean_note(rows):
@@ -113,10 +94,15 @@ def _facts(scene: Scene) -> Facts:
     if isinstance(scene, GearScene):
         yield from _geometry(scene)
         yield from _estimates(scene)
+    elif isinstance(scene, TrainScene):
+        from gearidae.cli.checking_train import train_facts
+
+        yield from train_facts(scene)
     else:
         yield from _roller(scene)
     yield from _contact(scene)
-    yield from _run(scene)
+    if not isinstance(scene, TrainScene):
+        yield from _run(scene)
 
 
 def _geometry(scene: Scene) -> Facts:

@@ -6,6 +6,7 @@ import logging
 import math
 from typing import TYPE_CHECKING, Final
 
+from gearidae.scene import TrainScene
 from gearidae.scene.prefixes import with_prefix
 from gearidae.torques import torque_law
 
@@ -34,6 +35,8 @@ def doubts(scene: Scene) -> list[str]:
     list of str
         Sentences, each with the key and the numbers; empty for most scenes.
     """
+    if isinstance(scene, TrainScene):
+        return [f"mesh {name}: {line}" for name in scene.meshes for line in _sizes(scene.pair(name))]
     parts = (_sizes, _resistance, _bodies, _path_force, _idle, _inertias, _laws)
     return [line for part in parts for line in part(scene)]
 

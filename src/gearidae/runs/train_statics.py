@@ -21,7 +21,7 @@ from gearidae.arrays import Floats
 from gearidae.mesh.involute import curvature_radii, separation
 from gearidae.mesh.pair_contact import PairContact, pair_contact
 from gearidae.runs.estimates import mean_over_run
-from gearidae.scene import TrainScene
+from gearidae.scene import GearScene, TrainScene
 from gearidae.scene.train import Train, TrainMesh
 
 _NEWTON: Final = 200
@@ -113,6 +113,13 @@ def mesh_forces(scene: TrainScene) -> Floats:
     if len(train.meshes) == len(train.shafts) - 1:
         return np.asarray(np.linalg.lstsq(arms.T, outside, rcond=None)[0])
     return _shared(scene, arms, outside, torque)
+
+
+def stages(scene: TrainScene) -> Iterator[tuple[str, GearScene]]:
+    """Yield the name of each mesh, and its pair under a constant torque that gives the mesh's mean force."""
+    for mesh, force in zip(scene.train.meshes, mesh_forces(scene), strict=True):
+        torque = float(force) * mesh.geometry.base_radius_pinion
+        yield mesh.name, scene.pair(mesh.name).replace({"drive": {"torque": torque}, "load": None})
 
 
 def _shared(scene: TrainScene, arms: Floats, outside: Floats, torque: float) -> Floats:

@@ -6,7 +6,8 @@ Nothing here stops a run. Each row says in words what follows if its limit is no
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
@@ -33,7 +34,9 @@ from gearidae.contact.surroundings import (
 from gearidae.mesh.pair_contact import PairContact
 from gearidae.runs.estimates import Rest, balanced_speed, mean_drive_torque, rest_of
 from gearidae.runs.rubbing import locking_rows
+from gearidae.runs.train_statics import stages
 from gearidae.runs.yielding import yielding_row
+from gearidae.scene import TrainScene
 from gearidae.scene.gears import disc_inertia
 from gearidae.scene.prefixes import with_prefix
 from gearidae.scene.validity_row import EXPECTED_ASPERITIES, ValidityRow, rows_to_json
@@ -66,8 +69,8 @@ def validity(scene: Scene) -> pd.DataFrame:
     Parameters
     ----------
     scene : Scene
-        A gear pair (its contact at the pitch point, at rest under the mean torque of the drive) or a roller (at its
-        closest approach, with rigid bodies).
+        A gear pair (its contact at the pitch point, at rest under the mean torque of the drive), a train (each of its
+        meshes likewise, under its own mean force) or a roller (at its closest approach, with rigid bodies).
 
     Returns
     -------
@@ -114,7 +117,16 @@ def validity_rows(scene: Scene, force: float = math.nan) -> list[ValidityRow]:
     force : float, optional
         Largest force of a run [N], at which asperities are compared with those that yield; by default that at rest.
     """
+    if isinstance(scene, TrainScene):
+        return [row for mesh, pair in stages(scene) for row in _of_mesh(mesh, validity_rows(pair))]
     return [*_rows(scene), yielding_row(scene, force)]
+
+
+def _of_mesh(mesh: str, rows: Iterable[ValidityRow]) -> Iterator[ValidityRow]:
+    """Name the rows of one mesh of a train after it; what depends on a whole shaft is not of a mesh."""
+    for row in rows:
+        if row.name != "disc_drag" and not row.name.startswith("inertia_"):
+            yield replace(row, name=f"{mesh}.{row.name}", quantity=f"{mesh}: {row.quantity}")
 
 
 # Some 15 ms: an archive needs them at its beginning and at its end.

@@ -171,7 +171,8 @@ class Scene(Group):
             If such gears cannot mesh, or the scene has none.
         """
         if self.gears is None:
-            raise SceneError("gears", "(missing)", "a scene with a roller has no mesh geometry")
+            where = "has no mesh geometry" if self.roller else "or a train has none: see scene.train.meshes"
+            raise SceneError("gears", "(missing)", f"a scene with a roller {where}")
         gears = self.gears
         try:
             return mesh_geometry(

@@ -1,0 +1,134 @@
+"""What ``gearidae check`` says of a train: each mesh, each hub, how loops close, and what starts it."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gearidae.cli.fact import Fact, Facts
+from gearidae.mesh.pair_contact import pair_contact
+from gearidae.runs.train_statics import (
+    hub_loads,
+    mesh_forces,
+    natural_frequencies,
+    overlapping,
+    starting_torque,
+    steady_speed,
+)
+
+if TYPE_CHECKING:
+    from gearidae.arrays import Floats
+    from gearidae.scene import TrainScene
+    from gearidae.scene.train import TrainMesh
+
+def train_facts(scene: TrainScene) -> Facts:
+    """Yield the rows of a train."""
+    train, forces = scene.train, mesh_forces(scene)
+    drive, load = train.shafts[train.drive], train.shafts[train.load]
+    size = f"{len(train.shafts)} shafts, {len(train.meshes)} meshes, without friction of the teeth"
+    yield Fact("Train", "", size)
+    ratio = 1 / load.ratio
+    yield Fact("ratio", f"{ratio}", f"speed of {drive.name} over that of {load.name}", float(ratio), "1")
+    yield _speed(scene)
+    for mesh, force in zip(train.meshes, forces, strict=True):
+        yield from _mesh(scene, mesh, float(force))
+    yield Fact("Whole train")
+    yield from _loops(scene, forces)
+    yield from _hubs(scene, forces)
+    frequencies = natural_frequencies(scene, forces)
+    if frequencies:
+        text = ", ".join(f"{frequency:.4g}" for frequency in frequencies)
+        words = "of small oscillations of the whole train"
+        yield Fact("natural frequencies", f"{text} Hz", words, tuple(frequencies), "Hz")
+    for first, second in overlapping(train):
+        yield Fact("tip circles overlap", f"{first} and {second}", "they must lie in different planes")
+    yield from _sides(scene)
+
+
+def _mesh(scene: TrainScene, mesh: TrainMesh, force: float) -> Facts:
+    geometry, contact = mesh.geometry, pair_contact(scene.pair(mesh.name))
+    yield Fact(f"Mesh {mesh.name}", "", f"{mesh.driver} drives {mesh.driven}")
+    teeth = geometry.pinion_teeth, geometry.gear_teeth
+    yield Fact("teeth", f"{teeth[0]}:{teeth[1]}", f"ratio {mesh.ratio}", teeth, "1")
+    contacts = geometry.contact_ratio
+    yield Fact("contact ratio", f"{contacts:.4g}", "pairs in mesh on average", contacts, "1")
+    where = f"line of centres at {math.degrees(mesh.angle):.6g} deg"
+    yield Fact("phase", f"{mesh.phase:.10g}", f"of {geometry.base_pitch * 1e6:.5g} um; {where}", mesh.phase, "1")
+    yield Fact("force", f"{force * 1e6:.4g} uN", "under the mean drive", force, "N")
+    gap = contact.resting_gap(force)
+    if not math.isnan(gap):
+        yield Fact("equilibrium gap", f"{gap * 1e9:.4g} nm", "one pair at the pitch point", gap, "m")
+        stiffness = contact.stiffness(gap)
+        yield Fact("stiffness", f"{stiffness:.4g} N/m", "there", stiffness, "N/m")
+
+
+def _speed(scene: TrainScene) -> Fact:
+    load = scene.train.shafts[scene.train.load]
+    speed, name = steady_speed(scene) * float(load.ratio), f"speed of {load.name}"
+    if scene.drive.law is not None or scene.load.law is not None:
+        return Fact(name, "unknown", "a torque law decides")
+    if math.isinf(speed):
+        return Fact(name, "unbounded", "nothing slows the train down")
+    words = "from the mean torques, without friction or sticking"
+    return Fact(name, f"{speed:.5g} rad/s", words, speed, "rad/s")
+
+
+def _loops(scene: TrainScene, forces: Floats) -> Facts:
+    """Say how loops close, and how the shafts that are driven twice share their load."""
+    train = scene.train
+    for loop in train.loops:
+        mesh = train.mesh(loop[-1])
+        length = mesh.residual * mesh.geometry.base_pitch
+        text = f"{mesh.residual:.4g} pitches, {length * 1e9:.4g} nm"
+        words = f"residual with which the loop {', '.join(loop)} closes"
+        yield Fact("loop", text, words, (mesh.residual, length), "1, m")
+    for number, shaft in enumerate(train.shafts):
+        driving = [k for k, mesh in enumerate(train.meshes) if mesh.b == number]
+        if len(driving) > 1:
+            torques = [float(forces[k]) * train.meshes[k].geometry.base_radius_gear for k in driving]
+            shares = tuple(torque / sum(torques) for torque in torques)
+            text = ", ".join(
+                f"{train.meshes[k].name} {100.0 * share:.4g} %"
+                for k, share in zip(driving, shares, strict=True)
+            )
+            yield Fact(f"load of {shaft.name} shared", text, "at the phases of the start", shares, "1")
+
+
+def _hubs(scene: TrainScene, forces: Floats) -> Facts:
+    """Loads of the hubs, and the torque that starts the train against them."""
+    vectors = hub_loads(scene.train, forces)
+    for (name, shaft), vector in zip(scene.shafts.items(), vectors, strict=True):
+        if shaft.hub_radius == 0.0 and shaft.dimple_radius == 0.0:
+            continue
+        load = math.hypot(*vector)
+        torque = shaft.hub_friction * (
+            shaft.hub_radius * (load + shaft.hub_adhesion) + shaft.dimple_radius * shaft.axial_load
+        )
+        angle = math.atan2(vector[1], vector[0])
+        words = f"friction takes {torque:.4g} N m" if scene.drive.law is None else "without the force of the law"
+        text = f"{load * 1e6:.4g} uN at {math.degrees(angle):.4g} deg"
+        yield Fact(f"load of the hub of {name}", text, words, (load, angle), "N, rad")
+    if not any(shaft.hub_friction for shaft in scene.shafts.values()) or scene.drive.law is not None:
+        return
+    torque, starting = starting_torque(scene)
+    if math.isinf(torque):
+        locked = next(mesh.driven for mesh, f in zip(scene.train.meshes, starting, strict=True) if np.isinf(f))
+        yield Fact("starting torque", "none", f"the hub of {locked} locks the train")
+    elif math.isnan(torque):
+        yield Fact("starting torque", "unknown", "a loop shares its load")
+    else:
+        words = "of the drive: dry resistances and hubs, without the teeth"
+        yield Fact("starting torque", f"{torque:.8g} N m", words, torque, "N m")
+
+
+def _sides(scene: TrainScene) -> Facts:
+    """Remind that a gear in two meshes has the coverage of each, where coverage goes by place."""
+    for shaft in scene.train.shafts:
+        for gear in shaft.gears:
+            met = [mesh for mesh in scene.train.meshes if gear in (mesh.driver, mesh.driven)]
+            roles = {mesh.driver == gear for mesh in met}
+            if len(met) > 1 and any(mesh.coating.by_place for mesh in met):
+                flanks = "; the drive flank of one is the coast flank of the other" if len(roles) > 1 else ""
+                yield Fact(f"coverage of {gear}", "one table in each mesh", f"it has {len(met)}{flanks}")

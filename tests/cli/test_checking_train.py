@@ -1,0 +1,66 @@
+"""``gearidae check`` of a train, and what other commands say of one."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import pytest
+from tests.reference.trains import chain, split
+
+from gearidae.cli import main
+from gearidae.scene import Scene, dump_case
+
+
+@pytest.fixture
+def case(tmp_path):
+    def write(tables):
+        path = tmp_path / "train.toml"
+        path.write_text(dump_case(Scene.from_dict(tables)))
+        return str(path)
+
+    return write
+
+
+def words(capfd):
+    return " ".join(capfd.readouterr().out.split())
+
+
+def test_check_prints_each_mesh_and_hub(case, capfd):
+    assert main(["check", case(chain(hubs=0.3))]) == 0
+    out = words(capfd)
+    for expected in (
+        "speed of input over that of output",
+        "Mesh first input drives idler teeth 19:38 ratio 2 contact ratio 1.624",
+        "phase 0.0613738378 of 11.48 um; line of centres at 40 deg",
+        "equilibrium gap 18.73 nm",
+        "stiffness 226.8 N/m",
+        "load of the hub of idler 0.5296 uN at 110 deg friction takes 6.355e-13 N m",
+        "natural frequencies 4.031e+05, 9.634e+05 Hz",
+        "starting torque 8.0046985e-12 N m",
+        "second: thermal motion",
+    ):
+        assert expected in out
+
+
+def test_check_takes_keys_of_meshes(case, capfd):
+    assert main(["check", case(split()), "--set", "meshes.two.offset=3 nm"]) == 0
+    assert "load of output shared three 73.83 %, four 26.17 %" in words(capfd)
+
+
+def test_check_prints_what_a_loop_leaves(case, capfd):
+    angles = 0.9022, math.asin(0.5 * math.sin(0.9022))
+    assert main(["check", case(split(angles))]) == 0
+    assert "loop 0.0004254 pitches, 4.883 nm residual with which the loop two, one, three, four closes" in words(capfd)
+
+
+def test_numbers_for_programs(case, capfd):
+    assert main(["check", case(chain()), "--json"]) == 0
+    rows = json.loads(capfd.readouterr().out)["rows"]
+    assert [row["value"] for row in rows if row["name"] == "force"] == pytest.approx([3.456719e-7] * 2, rel=1e-7)
+
+
+def test_a_run_of_several_meshes_is_bad_input(case, capfd, tmp_path):
+    assert main(["run", case(chain()), "-o", str(tmp_path / "out.nc")]) == 2
+    assert "trains of several are laid out and checked" in capfd.readouterr().err
+    assert not (tmp_path / "out.nc").exists()
