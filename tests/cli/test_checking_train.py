@@ -51,13 +51,18 @@ def test_check_takes_keys_of_meshes(case, capfd):
 def test_check_prints_what_a_loop_leaves(case, capfd):
     angles = 0.9022, math.asin(0.5 * math.sin(0.9022))
     assert main(["check", case(split(angles))]) == 0
-    assert "loop 0.0004254 pitches, 4.883 nm residual with which the loop two, one, three, four closes" in words(capfd)
+    assert (
+        "loop 0.0004254 pitches, 4.883 nm residual with which the loop two, one, three, four closes"
+        in words(capfd)
+    )
 
 
 def test_numbers_for_programs(case, capfd):
     assert main(["check", case(chain()), "--json"]) == 0
     rows = json.loads(capfd.readouterr().out)["rows"]
-    assert [row["value"] for row in rows if row["name"] == "force"] == pytest.approx([3.456719e-7] * 2, rel=1e-7)
+    assert [row["number"] for row in rows if row["name"] == "force"] == pytest.approx(
+        [3.456719e-7] * 2, rel=1e-7
+    )
 
 
 def test_a_run_of_several_meshes_is_bad_input(case, capfd, tmp_path):

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from gearidae.scene import TrainScene
     from gearidae.scene.train import TrainMesh
 
+
 def train_facts(scene: TrainScene) -> Facts:
     """Yield the rows of a train."""
     train, forces = scene.train, mesh_forces(scene)
@@ -55,7 +56,9 @@ def _mesh(scene: TrainScene, mesh: TrainMesh, force: float) -> Facts:
     contacts = geometry.contact_ratio
     yield Fact("contact ratio", f"{contacts:.4g}", "pairs in mesh on average", contacts, "1")
     where = f"line of centres at {math.degrees(mesh.angle):.6g} deg"
-    yield Fact("phase", f"{mesh.phase:.10g}", f"of {geometry.base_pitch * 1e6:.5g} um; {where}", mesh.phase, "1")
+    yield Fact(
+        "phase", f"{mesh.phase:.10g}", f"of {geometry.base_pitch * 1e6:.5g} um; {where}", mesh.phase, "1"
+    )
     yield Fact("force", f"{force * 1e6:.4g} uN", "under the mean drive", force, "N")
     gap = contact.resting_gap(force)
     if not math.isnan(gap):
@@ -83,7 +86,7 @@ def _loops(scene: TrainScene, forces: Floats) -> Facts:
         length = mesh.residual * mesh.geometry.base_pitch
         text = f"{mesh.residual:.4g} pitches, {length * 1e9:.4g} nm"
         words = f"residual with which the loop {', '.join(loop)} closes"
-        yield Fact("loop", text, words, (mesh.residual, length), "1, m")
+        yield Fact("loop", text, words, mesh.residual, "1")
     for number, shaft in enumerate(train.shafts):
         driving = [k for k, mesh in enumerate(train.meshes) if mesh.b == number]
         if len(driving) > 1:
@@ -107,14 +110,18 @@ def _hubs(scene: TrainScene, forces: Floats) -> Facts:
             shaft.hub_radius * (load + shaft.hub_adhesion) + shaft.dimple_radius * shaft.axial_load
         )
         angle = math.atan2(vector[1], vector[0])
-        words = f"friction takes {torque:.4g} N m" if scene.drive.law is None else "without the force of the law"
+        words = (
+            f"friction takes {torque:.4g} N m" if scene.drive.law is None else "without the force of the law"
+        )
         text = f"{load * 1e6:.4g} uN at {math.degrees(angle):.4g} deg"
-        yield Fact(f"load of the hub of {name}", text, words, (load, angle), "N, rad")
+        yield Fact(f"load of the hub of {name}", text, words, load, "N")
     if not any(shaft.hub_friction for shaft in scene.shafts.values()) or scene.drive.law is not None:
         return
     torque, starting = starting_torque(scene)
     if math.isinf(torque):
-        locked = next(mesh.driven for mesh, f in zip(scene.train.meshes, starting, strict=True) if np.isinf(f))
+        locked = next(
+            mesh.driven for mesh, f in zip(scene.train.meshes, starting, strict=True) if np.isinf(f)
+        )
         yield Fact("starting torque", "none", f"the hub of {locked} locks the train")
     elif math.isnan(torque):
         yield Fact("starting torque", "unknown", "a loop shares its load")

@@ -206,7 +206,11 @@ def pair_contact(scene: Scene) -> PairContact:
     if scene.roller is not None:
         return PairContact(parts, scene.contact.asperity, scene.roller.radius, scene.roller.width)
     if scene.gears is None:
-        raise SceneError("gears", "(missing)", "a scene has gears or a roller")
+        raise SceneError(
+            "gears",
+            "(missing)",
+            "of a train take one mesh, scene.pair(NAME): contacts are those of a pair or a roller",
+        )
     geometry = scene.geometry
     radius = float(curvature_radii(geometry, geometry.approach)[2])
     return PairContact(parts, scene.contact.asperity, radius, scene.gears.face_width)

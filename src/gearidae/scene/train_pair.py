@@ -46,13 +46,7 @@ def pair_of(scene: TrainScene, name: str) -> GearScene:
             mesh=mesh.mesh.model_copy(update=_SIZES),
             drive=drive,
             load=load,
-            # an offset opens the gap; that of a mesh which closes a loop follows from the others
-            initial=scene.initial.model_copy(
-                update={
-                    "mesh_phase": mesh.phase,
-                    "gap": scene.initial.gap + (0.0 if mesh.closes else mesh.offset),
-                }
-            ),
+            initial=scene.initial.model_copy(update={"mesh_phase": mesh.phase, "gap": _gap(scene, mesh)}),
             surface=mesh.surface,
             coating=mesh.coating,
             contact=scene.contact,
@@ -61,6 +55,13 @@ def pair_of(scene: TrainScene, name: str) -> GearScene:
     except SceneError as error:
         key = _train_key(mesh, error.key, [*scene.shafts])
         raise SceneError(key, error.value, error.allowed) from error
+
+
+def _gap(scene: TrainScene, mesh: TrainMesh) -> float:
+    """Gap of a mesh at the start, which an offset opens; that of a mesh which closes a loop follows from the others."""
+    if mesh.offset == 0.0 and mesh.surface == scene.surface:
+        return scene.initial.gap  # as it is given, perhaps in roughnesses
+    return float(scene.initial.gap) + (0.0 if mesh.closes else mesh.offset)
 
 
 def _hubs(scene: TrainScene, mesh: TrainMesh) -> dict[str, Any]:
