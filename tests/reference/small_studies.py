@@ -13,6 +13,10 @@ WINDOWS = {"cycles": 2, "settle": 1, "starts": 1, "places": 2, "fraction": 0.695
 DRAWN = {"drive.torque": "uniform(4e-18, 5e-18)", "coating.sam_fraction": "uniform(0.5, 1)"}
 
 
+def campbell(path, scene=LOW, **more):
+    return gd.studies.campbell(scene, [4.0, 6.0, 8.0], archive=path, **more)
+
+
 def coating_map(path, scene=LOW, **more):
     return gd.studies.coating_map(scene, [1.0, 0.8], archive=path, **more)
 
@@ -57,6 +61,14 @@ def pull_off(path, scene=LOW, **more):
     return gd.studies.pull_off(scene, 5, archive=path, **more)
 
 
+def start_probability(path, scene=LOW, **more):
+    rest = scene.replace({"initial.gear_speed": 0.0})
+    starts = {"size": 3, "by": ["2 ms", "50 ms"]}
+    return gd.studies.start_probability(
+        rest, {"drive.torque": DRAWN["drive.torque"]}, **starts, archive=path, **more
+    )
+
+
 def starting_torque(path, scene=LOW, **more):
     bare = scene.replace({"coating.sam_fraction": 0.45})
     return gd.studies.starting_torque(bare, "own", impacts=1, tolerance=1.0, archive=path, **more)
@@ -74,6 +86,7 @@ def sticking_threshold(path, scene=LOW, **more):
 STUDIES = {
     study.__name__: study
     for study in (
+        campbell,
         coating_map,
         convergence,
         ensemble,
@@ -83,6 +96,7 @@ STUDIES = {
         operating_map,
         posterior,
         pull_off,
+        start_probability,
         starting_torque,
         starting_torques,
         sticking_threshold,

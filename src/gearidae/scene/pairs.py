@@ -80,14 +80,14 @@ def sweep_values(pairs: Sequence[str]) -> dict[str, list[Any]]:
     return {key: _listed(key, text) for key, text in by_key.items()}
 
 
-def quantity(option: str, text: str, unit: str) -> float:
+def quantity(option: str, text: str | float, unit: str) -> float:
     """Read the quantity of an option.
 
     Parameters
     ----------
     option : str
         What errors shall name.
-    text : str
+    text : str or float
         A number in SI, or one with a unit.
     unit : str
         The SI unit.
@@ -102,7 +102,7 @@ def quantity(option: str, text: str, unit: str) -> float:
     except ValueError:
         pass
     try:
-        return from_text(text, unit)
+        return from_text(str(text), unit)
     except ValueError as error:
         raise SceneError(option, text, str(error)) from None
 

@@ -14,6 +14,7 @@ from gearidae.archive.dataset import dimension_names
 from gearidae.archive.specimen import SEED, has_seeds
 from gearidae.errors import SceneError
 from gearidae.scene.quantity import whole
+from gearidae.studies.shares import check_confidence, wilson
 
 _PER_BIN: Final = 25
 """Members that a bin has at least, by default: a probability of one half is then known to 0.1."""
@@ -53,8 +54,7 @@ def sticking_probability(
     SceneError
         If the dataset is no ensemble, the key was not drawn, or too few members are finished.
     """
-    if not 0.0 < confidence < 1.0:
-        raise SceneError("confidence", confidence, "must be above 0 and below 1")
+    check_confidence(confidence)
     ds = _along_members(ds)
     names = {key: name for key, name in drawn_keys(ds).items() if key != SEED}
     finished = np.isfinite(ds["sticks"].values)
@@ -135,21 +135,13 @@ def _bin_count(members: int, bins: int | None) -> int:
 
 def _band(groups: list[np.ndarray[Any, Any]], dims: tuple[str, ...], confidence: float) -> dict[str, Any]:
     """Probability, interval and counts of each group."""
-    from scipy.stats import binomtest  # which takes half a second to load, and pictures do without
-
     counts = [(int(group.sum()), group.size) for group in groups]
-    intervals = [
-        binomtest(stuck, size).proportion_ci(confidence_level=confidence, method="wilson")
-        for stuck, size in counts
-    ]
+    intervals = [wilson(stuck, size, confidence) for stuck, size in counts]
     percent = f"{100.0 * confidence:g} %"
     columns = {
         "probability": ([stuck / size for stuck, size in counts], "share of the members that stick"),
-        "low": ([interval.low for interval in intervals], f"lower end of the {percent} confidence interval"),
-        "high": (
-            [interval.high for interval in intervals],
-            f"upper end of the {percent} confidence interval",
-        ),
+        "low": ([low for low, _ in intervals], f"lower end of the {percent} confidence interval"),
+        "high": ([high for _, high in intervals], f"upper end of the {percent} confidence interval"),
         "stuck": ([stuck for stuck, _ in counts], "members that stick"),
         "members": ([size for _, size in counts], "members that are finished"),
     }

@@ -1,0 +1,392 @@
+"""Spectra of a gear pair at many speeds, with mesh, shafts and the frequency of the contact: a Campbell diagram.
+
+The drive holds each speed. Finished runs are kept beside the output, in OUT.nc.runs, until it is written.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+from typing import TYPE_CHECKING, Annotated, Any, Final, Unpack
+
+import numpy as np
+import xarray as xr
+
+from gearidae.analysis.ringing import HIGHEST
+from gearidae.analysis.spectra import power_spectrum
+from gearidae.archive.keep import read_keep
+from gearidae.archive.provenance import provenance
+from gearidae.arrays import Floats
+from gearidae.errors import SceneError
+from gearidae.runs.execution import RunOptions, prepared
+from gearidae.runs.ringing_samples import counted
+from gearidae.runs.sweep_plan import SweepPlan
+from gearidae.runs.sweeping import run_plan
+from gearidae.scene import GearScene, require_gears
+from gearidae.scene.pairs import quantity, sweep_values
+from gearidae.scene.quantity import whole
+from gearidae.studies.study import Call, Column, Option, Picture, Rows, Study
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from gearidae.runs.run_cache import RunCache
+    from gearidae.scene import Scene
+
+_MULTIPLES: Final = (1, 2, 3, 4)
+_LEFT_OUT: Final = 0.2
+"""Part of each run in which it settles."""
+_HOLDS: Final = 30.0
+"""Time constants of the speed in a run: six in what is left out, and each long against a period of the contact."""
+_HIGHEST_MULTIPLE: Final = 1000
+_DECADES: Final = 6
+_APART: Final = 0.02
+"""Part of the picture's height below which a line is not told from zero."""
+_ABOVE: Final = 1.3
+"""Height of the picture over its highest line."""
+
+
+def campbell(
+    scene: Scene,
+    speeds: Sequence[Any],
+    *,
+    variable: str = "gear_speed",
+    multiples: Sequence[int] = _MULTIPLES,
+    **options: Unpack[RunOptions],
+) -> xr.Dataset:
+    r"""Spectra at many speeds, and where multiples of the mesh frequency meet the frequency of the contact.
+
+    At each speed a run begins with it. In place of ``drive.torque``, ``drive.schedule`` and ``drive.law`` the drive has
+    the torque that the load takes there, and holds the speed by ``drive.speed_gain``: the scene's own, or one that
+    takes a thirtieth of the run, slow against the contact. Harmonics and static errors stay; they and the mesh are what
+    excites the gears. The first fifth of each run is left out.
+
+    Parameters
+    ----------
+    scene : Scene
+        With gears and samples; ``run.samples = "ringing"`` takes as many as show the contact.
+    speeds : sequence
+        Of the pinion [rad/s], two or more, or texts with a unit (``"300 rpm"``).
+    variable : str, optional
+        Sampled variable whose spectra are taken.
+    multiples : sequence of int, optional
+        Of the mesh frequency, whose crossings are looked for.
+    **options
+        ``executor``, ``jobs``, ``backend``, ``progress``, ``archive``, ``overwrite`` and ``resume``, as for
+        `gearidae.sweep`.
+
+    Returns
+    -------
+    Dataset, dims (speed, frequency)
+        ``density``, the power spectral density (Welch's method, segments of half what is left, mean taken out) [unit of
+        the variable squared per Hz]. Along ``speed`` [rad/s]: ``mean_speed`` [rad/s] that the pinion has had,
+        ``mesh_frequency`` [Hz] at it, ``contact_frequency`` [Hz] of one pair under the torque at that speed
+        (`contact_resonance`; NaN without a torque), ``rms`` of the variable about its mean, ``peak_frequency`` [Hz] of
+        the strongest line, ``verdict``. Along ``multiple``: ``critical_speed`` [rad/s] of the pinion at which this
+        multiple of the mesh frequency meets the contact's, between two of the speeds; NaN if it does not. The attribute
+        ``note`` says where lines may be aliases.
+
+    Raises
+    ------
+    SceneError
+        If the scene is a roller or has no samples, or a speed, a multiple, the variable or a setting is not allowed.
+    Interrupted
+        On Ctrl-C; finished runs are kept beside the archive.
+
+    Examples
+    --------
+    >>> import gearidae as gd
+    >>> scene = gd.preset("teodorescu2009_low_speed")
+    >>> found = gd.studies.campbell(scene, ["40 rpm", "60 rpm", "80 rpm"])  # doctest: +SKIP
+    >>> ax = gd.plot.campbell(found)  # doctest: +SKIP
+    """
+    ringing = scene.run.samples == "ringing"  # of the held speeds, which the scene itself does not have
+    base, execution = prepared(require_gears(scene), options, samples=2 if ringing else None)
+    held = _speeds(speeds)
+    crossed = [whole("multiples", multiple, 1, _HIGHEST_MULTIPLE) for multiple in multiples]
+    if base.run.sample_count < 2:
+        raise SceneError("run.samples", base.run.samples, "must be a number: spectra need samples")
+    try:
+        keep = read_keep(sorted({variable, "gear_speed"}), base)
+    except SceneError as error:
+        raise SceneError("variable", variable, error.allowed) from None
+    if variable not in keep.columns(base):
+        raise SceneError("variable", variable, f"must be sampled: one of {', '.join(_sampled(base))}")
+    base, plan = _plan(base, held, ringing=ringing)
+
+    def work(kept: RunCache | None) -> xr.Dataset:
+        runs = run_plan(plan, execution, kept, keep)
+        return _dataset(scene, plan, runs, variable, crossed)
+
+    settings = [held.tolist(), variable, crossed]
+    return STUDY.compute(execution, base, work, settings, origin=scene, keep=keep, scenes=plan.scenes)
+
+
+def _sampled(scene: Scene) -> tuple[str, ...]:
+    return read_keep(("samples",), scene).columns(scene)
+
+
+def _speeds(speeds: Sequence[Any]) -> Floats:
+    """Speeds of the pinion in rising order [rad/s]."""
+    asked = [speeds] if isinstance(speeds, int | float | str) else list(speeds)
+    values = np.array([quantity("speeds", value, "rad/s") for value in asked], dtype=np.float64)
+    if not np.isfinite(values).all() or np.unique(values).size < 2 or values.min() <= 0.0:
+        raise SceneError("speeds", str(speeds)[:60], "must be two speeds or more above 0 rad/s")
+    return np.unique(values)
+
+
+def _plan(base: GearScene, speeds: Floats, *, ringing: bool) -> tuple[GearScene, SweepPlan]:
+    """Make the scenes in which the drive holds each speed, and the one that they were made of."""
+    gears, load, duration = base.gears, base.load, base.run.duration
+    ratio = gears.pinion_teeth / gears.gear_teeth
+    inertia = gears.pinion_inertia + gears.gear_inertia * ratio**2
+    gain = base.drive.speed_gain or _HOLDS * inertia / duration
+    base = base.replace(
+        {
+            "drive.torque": 0.0,
+            "drive.schedule": [],
+            "drive.law": None,
+            "drive.speed": float(speeds[0]),
+            "drive.speed_gain": gain,
+            "run.stop": "time",
+        }
+    )
+    of_gear = speeds * ratio
+    taken = (load.torque + load.viscous * of_gear + load.drag * of_gear**2) * ratio
+    axis: dict[str, list[Any]] = {
+        "drive.speed": speeds.tolist(),
+        "drive.torque": taken.tolist(),
+        "initial.gear_speed": of_gear.tolist(),
+    }
+    if ringing:
+        base = base.replace({"run.samples": counted(_held(base.replace({"run.samples": "ringing"}), axis))})
+    return base, SweepPlan(base, (axis,), _held(base, axis))
+
+
+def _held(base: GearScene, axis: Mapping[str, Sequence[Any]]) -> list[Scene]:
+    """Scenes with the values of an axis."""
+    return [base.replace(dict(zip(axis, row, strict=True))) for row in zip(*axis.values(), strict=True)]
+
+
+def _dataset(
+    scene: Scene, plan: SweepPlan, runs: xr.Dataset, variable: str, multiples: Sequence[int]
+) -> xr.Dataset:
+    gears = plan.base.gears
+    assert gears is not None
+    settled = runs.isel(time=slice(round(_LEFT_OUT * runs.sizes["time"]), None))
+    density = power_spectrum(settled[[variable]], variable)
+    ended = runs["status"].values == "finished"
+    mean = np.where(ended, settled["gear_speed"].mean("time").values, np.nan)
+    pinion = mean * gears.gear_teeth / gears.pinion_teeth
+    mesh = pinion * gears.pinion_teeth / (2.0 * math.pi)
+    contact = np.array([_contact_frequency(member) for member in plan.scenes])
+    spectra = density.values
+    # below the second bin there is what is left of the mean
+    peaks = density["frequency"].values[2:][np.nan_to_num(spectra[:, 2:]).argmax(axis=1)]
+    speeds = np.array(plan.axes[0]["drive.speed"])
+    crossings = [_crossing(speeds, multiple * mesh, contact) for multiple in multiples]
+    columns = {
+        "speed": speeds,
+        "frequency": density["frequency"].values,
+        "multiple": np.array(multiples, dtype=np.int64),
+        "density": spectra,
+        "mean_speed": pinion,
+        "mesh_frequency": mesh,
+        "contact_frequency": contact,
+        "rms": np.where(ended, settled[variable].std("time").values, np.nan),
+        "peak_frequency": np.where(np.isfinite(spectra[:, 2:]).all(axis=1), peaks, np.nan),
+        "verdict": runs["verdict"].values,
+        "critical_speed": np.array(crossings),
+    }
+    rate, highest = float(density.attrs["sampling_rate"]), np.nanmax(np.append(contact, 0.0))
+    note = (
+        f"the contact's frequency, {highest:.4g} Hz, is above what samples at {rate:.4g} Hz show: lines may be "
+        'aliases; run.samples = "ringing" takes enough'
+    )
+    attributes = {
+        **provenance(plan.base, "took spectra at many speeds", swept=("drive.speed",)),
+        "title": f"{scene.name}: Campbell diagram of {variable}",
+        "summary": "Power spectral density at many speeds, frequencies of mesh and contact, and where they meet.",
+        "variable": variable,
+        "resolution": density.attrs["resolution"],
+        "pinion_teeth": gears.pinion_teeth,
+        "gear_teeth": gears.gear_teeth,
+        **({"note": note} if highest > HIGHEST * rate else {}),
+    }
+    units = str(runs[variable].attrs["units"])
+    return STUDY.dataset(
+        columns, attributes, units=units, density_units=str(density.attrs["units"]), variable=variable
+    )
+
+
+def _contact_frequency(scene: Scene) -> float:
+    """Frequency of one pair under the torque of a member [Hz]; NaN where there is none."""
+    from gearidae.runs.equilibrium import contact_resonance
+    from gearidae.runs.estimates import mean_drive_torque
+
+    gears = require_gears(scene)
+    return contact_resonance(gears) if mean_drive_torque(gears) > 0.0 else math.nan
+
+
+def _crossing(speeds: Floats, mesh: Floats, contact: Floats) -> float:
+    """Lowest speed at which two frequencies meet, by straight lines between the speeds; NaN if they do not."""
+    known = np.isfinite(mesh) & np.isfinite(contact)
+    for (low, below), (high, above) in pairwise(zip(speeds[known], (mesh - contact)[known], strict=True)):
+        if below <= 0.0 <= above or above <= 0.0 <= below:
+            return float(low + (high - low) * below / (below - above)) if above != below else float(low)
+    return math.nan
+
+
+def _call(
+    *,
+    speeds: Annotated[
+        str, Option("Speeds of the pinion: '4:12:0.5 rad/s', or '40 rpm,60 rpm'; numbers are rad/s.")
+    ],
+    variable: Annotated[str, Option("Sampled variable whose spectra are taken.")] = "gear_speed",
+    multiples: Annotated[
+        list[int] | None, Option("Multiples of the mesh frequency. Default: 1 2 3 4.", many=True)
+    ] = None,
+) -> Call:
+    held = _speeds(sweep_values([f"speeds={speeds}"])["speeds"])
+    words = f"{held.size} runs, speeds of the pinion from {held[0]:.4g} to {held[-1]:.4g} rad/s"
+    return Call((held.tolist(),), {"variable": variable, "multiples": multiples or _MULTIPLES}, words)
+
+
+def _sentence(ds: xr.Dataset) -> str:
+    low, high = (float(ds["speed"][place]) for place in (0, -1))
+    met = [
+        f"{int(multiple)} times at {float(speed):.4g} rad/s"
+        for multiple, speed in zip(ds["multiple"].values, ds["critical_speed"].values, strict=True)
+        if math.isfinite(speed)
+    ]
+    where = "the mesh frequency meets that of the contact "
+    none = f"no multiple up to {int(ds['multiple'].max())} of {where.strip()}"
+    return f"From {low:.4g} to {high:.4g} rad/s of the pinion {where + ', '.join(met) if met else none}."
+
+
+def _rows(ds: xr.Dataset) -> Rows:
+    """A line for each speed, then the crossings."""
+    yield str(ds.attrs["title"]), "", ""
+    units = str(ds["rms"].attrs["units"]).replace("rad s-1", "rad/s")
+    for number, speed in enumerate(ds["speed"].values.tolist()):
+        run = ds.isel(speed=number)
+        lines = f"strongest line {_hertz(run['peak_frequency'])}, mesh {_hertz(run['mesh_frequency'])}"
+        verdict = str(run["verdict"].item())
+        yield (
+            f"{speed:.4g} rad/s",
+            f"rms {float(run['rms']):.3g} {units}",
+            f"{lines}, contact {_hertz(run['contact_frequency'])}; {verdict}",
+        )
+    for multiple, speed in zip(ds["multiple"].values, ds["critical_speed"].values, strict=True):
+        met = f"{float(speed):.4g} rad/s" if math.isfinite(speed) else "not at these speeds"
+        yield f"{int(multiple)} x mesh meets the contact", met, ""
+    if "note" in ds.attrs:
+        yield "aliases", "possible", str(ds.attrs["note"])
+
+
+def _hertz(value: xr.DataArray) -> str:
+    return f"{float(value):.4g} Hz" if math.isfinite(float(value)) else "unknown"
+
+
+def picture(ds: xr.Dataset, ax: Axes | None = None, *, highest: float | None = None) -> Axes:
+    """Draw the spectra over the speed, with multiples of the mesh, the shafts and the contact as lines.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        From `gearidae.studies.campbell`.
+    ax : matplotlib Axes, optional
+        Where to draw; by default in a figure of its own.
+    highest : float, optional
+        Highest frequency to be shown [Hz]; by default somewhat above the contact and the multiples.
+
+    Returns
+    -------
+    Axes
+        With a circle where a multiple of the mesh frequency meets the contact's.
+
+    Raises
+    ------
+    SceneError
+        If the dataset is something else.
+    """
+    from matplotlib.ticker import EngFormatter
+
+    from gearidae.drawing.style import COLOURS, new_axes
+
+    STUDY.require(ds)
+    ax = new_axes(ax, height=4.4)
+    speed, mesh = ds["speed"].values, ds["mesh_frequency"].values
+    multiples = ds["multiple"].values.tolist()
+    contact = ds["contact_frequency"].values
+    if highest is None:
+        known = np.concatenate([contact, max(multiples) * mesh])
+        known = known[np.isfinite(known)]
+        highest = _ABOVE * float(known.max()) if known.size else math.inf
+    shown = ds.sel(frequency=slice(0.0, highest))
+    strongest = float(np.nanmax(np.append(shown["density"].values, 0.0))) or 1.0
+    level = 10.0 * np.log10(np.maximum(shown["density"].values, strongest * 10.0**-_DECADES))
+    colours = ax.pcolormesh(
+        speed, shown["frequency"], level.T, shading="nearest", cmap="viridis", rasterized=True
+    )
+    bar = ax.figure.colorbar(colours, ax=ax, pad=0.02)
+    units = str(ds["density"].attrs["units"]).replace("rad s-1", "rad/s").replace(")2 Hz-1", ")²/Hz")
+    bar.set_label(f"dB re 1 {units}")
+    top = float(shown["frequency"][-1])
+    for number, multiple in enumerate(multiples):
+        ax.plot(
+            speed, multiple * mesh, color="white", linewidth=0.8, label="" if number else "mesh and multiples"
+        )
+        if multiple * mesh[-1] < top:
+            place: dict[str, Any] = {"xytext": (-2, 3), "textcoords": "offset points", "ha": "right"}
+            ax.annotate(
+                f"{multiple}", (speed[-1], multiple * mesh[-1]), **place, color="white", fontsize="x-small"
+            )
+    for name, style in (("pinion", "--"), ("gear", ":")):
+        line = mesh / int(ds.attrs[f"{name}_teeth"])
+        if np.nanmax(line) > _APART * top:
+            ax.plot(speed, line, style, color="white", linewidth=0.8, label=name)
+    ax.plot(speed, contact, color=COLOURS[4], linewidth=1.6, label="contact")
+    met = np.isfinite(ds["critical_speed"].values)
+    at = ds["critical_speed"].values[met]
+    ax.plot(at, np.interp(at, speed, contact), "o", color=COLOURS[1], fillstyle="none", label="_met")
+    ax.set_ylim(0.0, top)
+    ax.yaxis.set_major_formatter(EngFormatter("Hz"))
+    ax.set_xlabel("speed of the pinion (rad/s)")
+    ax.set_ylabel("frequency")
+    if "note" in ds.attrs:
+        ax.set_title(str(ds.attrs["note"]).replace("; ", ";\n"), fontsize="x-small", loc="left")
+    ax.legend(loc="upper left", fontsize="x-small", labelcolor="white", facecolor="0.2")
+    return ax
+
+
+_SPEED: Final = ("speed",)
+STUDY = Study(
+    kind="campbell",
+    words="Campbell diagram",
+    maker="campbell",
+    title="Campbell diagram",
+    command=_call,
+    examples=("gearidae campbell low_speed --speeds '4:12:0.5 rad/s'",),
+    columns={
+        "speed": Column(_SPEED, "rad s-1", "speed of the pinion that is held"),
+        "frequency": Column(("frequency",), "Hz", "frequency"),
+        "multiple": Column(("multiple",), "1", "multiple of the mesh frequency"),
+        "density": Column(("speed", "frequency"), "{density_units}", "power spectral density of {variable}"),
+        "mean_speed": Column(_SPEED, "rad s-1", "mean speed of the pinion"),
+        "mesh_frequency": Column(_SPEED, "Hz", "mesh frequency at the mean speed"),
+        "contact_frequency": Column(_SPEED, "Hz", "frequency of one pair under the torque at the speed"),
+        "rms": Column(_SPEED, "{units}", "root of the mean square of {variable} about its mean"),
+        "peak_frequency": Column(_SPEED, "Hz", "frequency of the strongest line"),
+        "verdict": Column(_SPEED, "", "verdict of the run"),
+        "critical_speed": Column(
+            ("multiple",),
+            "rad s-1",
+            "speed at which the multiple of the mesh frequency meets that of the contact",
+        ),
+    },
+    sentence=_sentence,
+    rows=_rows,
+    pictures=(Picture("campbell", "Spectra over the speed, with mesh, shafts and contact", draw=picture),),
+)
