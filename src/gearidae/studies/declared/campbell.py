@@ -20,7 +20,6 @@ from gearidae.archive.provenance import provenance
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.runs.execution import RunOptions, prepared
-from gearidae.runs.ringing_samples import counted
 from gearidae.runs.sweep_plan import SweepPlan
 from gearidae.runs.sweeping import run_plan
 from gearidae.scene import GearScene, require_gears
@@ -160,6 +159,10 @@ def _plan(base: GearScene, speeds: Floats, *, ringing: bool) -> tuple[GearScene,
         "initial.gear_speed": of_gear.tolist(),
     }
     if ringing:
+        from gearidae.runs.ringing_samples import (
+            counted,
+        )  # compiled code, which those who read files do without
+
         base = base.replace({"run.samples": counted(_held(base.replace({"run.samples": "ringing"}), axis))})
     return base, SweepPlan(base, (axis,), _held(base, axis))
 
