@@ -103,6 +103,12 @@ def test_ranges_that_are_none(text):
         sweep_values([f"a.b={text}"])
 
 
+@pytest.mark.parametrize("text", ["0.4-0.6", "0.4..0.6", "0.4 to 0.6", "-1e-6 - 2e-6", "1-2 um"])
+def test_a_range_in_prose_is_told_how_it_is_written(text):
+    with pytest.raises(SceneError, match=r"is no range: one is written start:stop:step, such as 0\.4:0\.6:"):
+        sweep_values([f"a.b={text}"])
+
+
 @pytest.mark.parametrize(
     ("text", "spread_out"),
     [

@@ -100,6 +100,12 @@ def test_byte_order_mark_and_windows_line_ends(tmp_path: Path) -> None:
         (b"\xff\xfe\x00", "is not a text file in UTF-8"),
         (b"\x00\x01\x02", "is not TOML"),
         (b"#" * 2_000_000, "is longer than"),
+        (b"[mesh]\nbacklash = 0.2 um # a remark\n", r"line 2.*: quote a number with its unit, \"0\.2 um\"$"),
+        (b"x = {torque = 5 aN m}\n", r": quote a number with its unit, \"5 aN m\"$"),
+        (b'x = ["1 um", 2um]\n', r": quote a number with its unit, \"2um\"$"),
+        (b"x = 60 %\n", r": quote a number with its unit, \"60 %\"$"),
+        (b"x = 05\n", r"column \d+\)$"),
+        (b'x = "5 um" y\n', r"column \d+\)$"),
     ],
 )
 def test_files_that_are_no_case(tmp_path: Path, content: bytes, reason: str) -> None:

@@ -187,6 +187,13 @@ def test_a_bare_number_beside_a_unit_is_refused(texts: tuple[object, ...]) -> No
         refuse_bare(texts)
 
 
+def test_a_unit_at_the_end_of_a_list_is_no_unit_of_all() -> None:
+    with pytest.raises(ValueError, match=r"^2 has no unit beside 6 aN m: give each its unit \(2 aN m\), or"):
+        refuse_bare(("2", "4", "6 aN m"))
+    with pytest.raises(ValueError, match=r"^4 has no unit beside 2 aN m: give each its unit, or"):
+        refuse_bare(("2 aN m", "4"))
+
+
 @pytest.mark.parametrize(
     "texts", [("1", 2.0), ("1 nm", "2 um"), (0, "0.0", "2 nm"), ("a", None, True, "1 nm")]
 )

@@ -194,13 +194,15 @@ class GrowingArchive:
             values: NDArray[Any] = self._file[name][cut]
             return values
 
-    def finish(self, template: xr.Dataset) -> None:
+    def finish(self, template: xr.Dataset, *, compress: bool = True) -> None:
         """Rewrite the file as any other archive, without room to spare, and close it.
 
         Parameters
         ----------
         template : xarray.Dataset
             The run's dataset with its final attributes, without samples and rows.
+        compress : bool, optional
+            As for `gearidae.save`.
 
         Raises
         ------
@@ -211,7 +213,7 @@ class GrowingArchive:
         part.unlink(missing_ok=True)
         try:
             with disk_errors(part):
-                self._compact(template, part)
+                self._compact(template, part, compress=compress)
                 self.close()  # Windows replaces no file that is open
                 part.replace(self.path)
                 sync(self.path.parent)
@@ -301,8 +303,8 @@ class GrowingArchive:
             part.unlink(missing_ok=True)
         sync(self.path.parent)
 
-    def _compact(self, template: xr.Dataset, part: Path) -> None:
-        define(with_checksums(template), part, self.lengths)
+    def _compact(self, template: xr.Dataset, part: Path, *, compress: bool) -> None:
+        define(with_checksums(template), part, self.lengths, compress=compress)
         with opened(part, "a") as file:
             file.set_auto_maskandscale(False)
             for name, variable in file.variables.items():

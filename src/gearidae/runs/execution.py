@@ -75,6 +75,7 @@ class Execution:
     resume: bool = False
     method: str = "auto"
     """Formulas of the solver, as the scenes have them: not every driver has all."""
+    compress: bool = True
 
     def __post_init__(self) -> None:
         check_jobs(self.jobs)
@@ -197,7 +198,8 @@ def run_kept(
         def keep(ds: xr.Dataset) -> xr.Dataset:
             made = ds if prepared is None else prepared(ds)
             if made.sizes:
-                save(made, target, overwrite=execution.overwrite or execution.resume)
+                overwrite = execution.overwrite or execution.resume
+                save(made, target, overwrite=overwrite, compress=execution.compress)
             return ds
 
         def cut_off(ds: xr.Dataset) -> xr.Dataset:

@@ -33,6 +33,7 @@ def simulate(
     resume: bool = False,
     start: xr.Dataset | str | os.PathLike[str] | None = None,
     on_block: Callable[[Block], object] | None = None,
+    compress: bool = True,
 ) -> xr.Dataset:
     """Run a scene.
 
@@ -68,6 +69,8 @@ def simulate(
     on_block : callable, optional
         Called with each block (`gearidae.records.Block`: samples, events, the time reached) as soon as it is there;
         by returning True it ends the run, which keeps its data, with the status ``stopped``.
+    compress : bool, optional
+        Whether the finished `archive` is compressed, as for `gearidae.save`.
 
     Returns
     -------
@@ -119,6 +122,7 @@ def simulate(
                 resume=resume,
                 start=begin,
                 on_block=on_block,
+                compress=compress,
             )
     if resume:
         raise SceneError("resume", resume, "needs the archive to go on from (archive=)")

@@ -41,6 +41,7 @@ def stream(
     resume: bool,
     start: engine.Start,
     on_block: engine.OnBlock | None = None,
+    compress: bool = True,
 ) -> xr.Dataset:
     """Run a scene, or go on with a run of it, into an archive.
 
@@ -50,7 +51,7 @@ def stream(
         As it is to be run.
     target : Path
         The archive, checked by `gearidae.archive.check_target`.
-    backend, progress, resume, on_block
+    backend, progress, resume, on_block, compress
         As for `gearidae.simulate`.
     start : Start
         Where the run begins.
@@ -76,7 +77,7 @@ def stream(
     with run.take_up() if unfinished is not None else run.begin() as archive:
         with run_progress(progress, run.end) as report:
             ended = run.follow(archive, report, watched(report, on_block))
-        run.leave(archive, ended)
+        run.leave(archive, ended, compress=compress)
     return open_archive(target)
 
 
@@ -145,7 +146,7 @@ class _Run:
         except DiskError as error:
             raise self._not_written(archive, reached, error) from error
 
-    def leave(self, archive: GrowingArchive, ended: Ended) -> None:
+    def leave(self, archive: GrowingArchive, ended: Ended, *, compress: bool) -> None:
         """Put the archive into its final form, or close it as it is for a run that was interrupted.
 
         Raises
@@ -158,7 +159,7 @@ class _Run:
         try:
             template = self._template(ended)
             log_imbalance(template)
-            archive.finish(template)
+            archive.finish(template, compress=compress)
         except KeyboardInterrupt:
             raise self._interrupted(archive) from None
         except DiskError as error:

@@ -41,6 +41,7 @@ def sweep(
     zipped: bool | Collection[str] = False,
     resume: bool = False,
     keep: Iterable[str] | str | None = None,
+    compress: bool = True,
 ) -> xr.Dataset:
     """Run a scene for every combination of some keys' values, or for values that are walked together.
 
@@ -81,6 +82,8 @@ def sweep(
         (``extremes``, ``statistics``, ``energy_balance``, ``scene``, ``samples``, ``events``). Everything by default,
         and no more than ``verdict`` (with ``impacts``, ``status``, ``wall_time`` and when a gear stuck) for an empty
         list, or ``["verdict"]``. Without samples the runs are made with ``run.samples = "off"``.
+    compress : bool, optional
+        Whether `archive` is compressed, as for `gearidae.save`.
 
     Returns
     -------
@@ -110,7 +113,9 @@ def sweep(
     parts = read_keep(keep, base)
     if not parts.columns(base):
         base = base.replace({"run.samples": "off"})
-    execution = Execution(executor, jobs, backend, progress, archive, overwrite, resume, base.run.method)
+    execution = Execution(
+        executor, jobs, backend, progress, archive, overwrite, resume, base.run.method, compress
+    )
     return run_study(plan_sweep(base, over, zipped=zipped), execution, {}, keep=parts)
 
 

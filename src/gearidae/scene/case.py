@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from pathlib import Path
 
 from gearidae.errors import SceneError
@@ -11,6 +12,11 @@ from gearidae.scene.literal import read_toml
 from gearidae.scene.scene import Scene
 from gearidae.scene.schedule_table import in_folder
 
+_LINE = re.compile(r"\(at line (\d+),")
+_BARE_UNIT = re.compile(
+    r"[=\[,]\s*([+-]?\d[\d_.]*(?:[eE][+-]?\d+)?\s*(?:1\s*/\s*)?(?:[^\W\d]|%)[^,#\]}\"']*)"
+)
+"""A number with a unit where a value begins, up to where it ends; no text is quoted in it."""
 _LARGEST = 1_000_000  # bytes; a scene takes two thousand
 
 
@@ -37,13 +43,22 @@ def load_case(path: str | os.PathLike[str]) -> Scene:
     try:
         data = read_toml(text)
     except ValueError as error:  # not TOMLDecodeError alone: integers of thousands of digits fail otherwise
-        raise SceneError("case file", shorten(os.fspath(path)), f"is not TOML: {error}") from error
+        raise SceneError(
+            "case file", shorten(os.fspath(path)), f"is not TOML: {error}{_unquoted(text, error)}"
+        ) from error
     if not data:
         raise SceneError("case file", shorten(os.fspath(path)), "is empty")
     data.pop("$schema", None)  # for editors: where the schema of case files is
     data.setdefault("name", _stem(path))
     _find_files(data, Path(path).parent)
     return Scene.from_dict(data)
+
+
+def _unquoted(text: str, error: ValueError) -> str:
+    """Advise to quote a number with its unit, where that is what TOML does not understand; else nothing."""
+    place = _LINE.search(str(error))
+    bare = place and _BARE_UNIT.search(text.splitlines()[int(place[1]) - 1])
+    return f': quote a number with its unit, "{bare[1].strip()}"' if bare else ""
 
 
 def _find_files(data: dict[str, object], folder: Path) -> None:

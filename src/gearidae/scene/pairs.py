@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from decimal import Decimal, DecimalException
 from typing import Any
@@ -11,6 +12,9 @@ from gearidae.scene.literal import literal
 from gearidae.scene.units import from_text
 
 _LONGEST_RANGE = 100_000
+_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_DASHED = re.compile(rf"{_NUMBER}\s*(?:-|\u2013|\.{{2,3}}|to)\s*{_NUMBER}(?:\s*[^\W\d].*)?")
+"""A range as it is written in prose (``0.4-0.6``)."""
 
 
 def assignments(
@@ -122,6 +126,8 @@ def _listed(key: str, text: str) -> list[Any]:
     if text.startswith("["):
         value = literal(text)
         return value if isinstance(value, list) else [value]
+    if _DASHED.fullmatch(text):
+        raise SceneError(key, text, "is no range: one is written start:stop:step, such as 0.4:0.6:0.05")
     return [literal(part.strip()) for part in text.split(",")]
 
 

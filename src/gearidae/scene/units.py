@@ -106,15 +106,20 @@ def refuse_bare(texts: Iterable[object]) -> None:
     """
     bare: list[str] = []
     dressed: list[str] = []
+    unit, own_unit = "", ""
     for text in texts:
         match = _NUMBER_AND_UNIT.fullmatch(_plain(str(text)))
+        own_unit = match[2] if match else ""
         if match is not None:
-            (dressed if match[2] else bare).append(str(text).strip())
+            (dressed if own_unit else bare).append(str(text).strip())
+            unit = unit or own_unit
     if not any(map(_OWN_ZERO.search, dressed)):
         bare = [text for text in bare if float(text) != 0.0]
     if bare and dressed:
+        # a single unit at the end of a list is meant for all of it
+        meant = f" ({bare[0]} {unit})" if len(dressed) == 1 and own_unit else ""
         raise ValueError(
-            f"{bare[0]} has no unit beside {dressed[0]}: give each its unit, or none for SI units"
+            f"{bare[0]} has no unit beside {dressed[0]}: give each its unit{meant}, or none for SI units"
         )
 
 
