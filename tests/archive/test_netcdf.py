@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import multiprocessing
 import threading
-import zlib
 from pathlib import Path
 
 import netCDF4
@@ -247,10 +246,9 @@ def test_damage_within_samples_is_noticed(compress, large, tmp_path):
     path = tmp_path / "run.nc"
     save(large, path, compress=compress)
     content = bytearray(path.read_bytes())
-    speeds = large.gear_speed.values[: CHUNK // 8]
-    by_place = speeds.view(np.uint8).reshape(-1, 8).T.tobytes()
-    place = content.find(zlib.compress(by_place, 1) if compress else speeds.tobytes()) + 1000
-    assert place > 1000
+    # samples fill all but the ends of the file; where compressed ones lie depends on the library that deflated them
+    place = len(content) // 2 if compress else content.find(large.gear_speed.values[1000:1010].tobytes())
+    assert place > 0
     content[place] ^= 1
     path.write_bytes(content)
     with pytest.raises(gd.SceneError, match="damaged"):
