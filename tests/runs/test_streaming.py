@@ -440,7 +440,7 @@ def full(path):
 def test_no_room_for_the_final_form(path, monkeypatch):
     """The run is over, its archive still in the form of one under way: nothing is computed a second time."""
     whole = gd.simulate(LOW, backend="sksundae")
-    monkeypatch.setattr(growing.GrowingArchive, "_compact", lambda self, template, part: full(part))
+    monkeypatch.setattr(growing.GrowingArchive, "_compact", lambda self, template, part, **_: full(part))
     with pytest.raises(gd.SolverError, match="No space left"):
         simulate(path)
     assert assert_sound(path, whole).sizes["time"] == whole.sizes["time"]
