@@ -73,6 +73,11 @@ def test_check_does_not_guess_the_speed_that_a_law_gives(capfd):
     assert main(["check", str(Path(CASE).with_name("microengine.toml"))]) == 0
     out = words(capfd)
     assert "gear speed unknown a torque law decides" in out
+    assert (
+        "ageing of the pinion hub 50 um/s below this sliding speed, 16.67 rad/s of its shaft, it may chatter"
+        in out
+    )
+    assert "after a long rest friction takes 3.75e-12 N m" in out
     assert "does not overcome" not in out
 
 

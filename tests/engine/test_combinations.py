@@ -52,7 +52,7 @@ half out."""
 @pytest.mark.parametrize("feature", [*CHANGES, "no friction"])
 def test_a_feature_acts_in_the_short_scene(feature):
     """What would not change the motion would be tested by nothing here."""
-    friction = {"coulomb friction", "shear friction", "hub friction", "pin friction"}
+    friction = {"coulomb friction", "shear friction", "hub friction", "friction that ages", "pin friction"}
     without = solve(scene_with(), backend="native")
     run = without if feature == "no friction" else solve(scene_with(feature), backend="native")
     assert (friction_loss(run.balance) > 1e-4 * run.balance.throughput) is (feature in friction)

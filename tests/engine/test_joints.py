@@ -28,6 +28,7 @@ def engine(coefficient, hertz, springs=(0.0, 0.0), pin_coefficient=None, duratio
     return CASE.replace(
         {
             "gears.hub_friction": coefficient,
+            "gears.hub_friction_rise": 0.0,
             "gears.pinion_hub_radius": HUBS[0],
             "gears.gear_hub_radius": HUBS[1],
             "gears.pinion_hub_adhesion": 0.0,
@@ -224,6 +225,7 @@ def drawn(seed):
     return CASE.replace(
         {
             "gears.hub_friction": choice(0.0, 0.1, 0.3, 0.6),
+            "gears.hub_friction_rise": 0.0,
             "gears.pinion_hub_radius": choice(0.0, 1.0) * rng.uniform(1e-6, 5e-6) + 1e-9,
             "gears.gear_hub_radius": rng.uniform(1e-6, 2e-5),
             "gears.pinion_hub_adhesion": choice(0.0, 1e-7, 1e-6),

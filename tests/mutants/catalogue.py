@@ -621,8 +621,8 @@ MUTANTS = (
     Mutant(
         "a gear that holds with the friction of its hub alone, without the dry load",
         "engine/friction/forces.py",
-        "margin = dry + friction.gear_hub * loads.gear - abs(pairs.gear)",
-        "margin = friction.gear_hub * loads.gear - abs(pairs.gear)",
+        "margin = dry + joints.gear_hub * loads.gear - abs(pairs.gear)",
+        "margin = joints.gear_hub * loads.gear - abs(pairs.gear)",
         ("engine/test_stick_slip.py", "engine/test_friction.py", "engine/test_hub_load.py"),
     ),
     Mutant(
@@ -631,5 +631,19 @@ MUTANTS = (
         "held = (first * on_pinion - second * on_gear + pairs.bend) / inertia",
         "held = (first * on_pinion - second * on_gear) / inertia",
         ("engine/test_hub_load.py::test_a_pair_that_rolls_goes_on_rolling_while_its_levers_change",),
+    ),
+    Mutant(
+        "contacts that age at rest and forget nothing in sliding",
+        "engine/friction/ageing.py",
+        "left = math.exp((begin - end) * forgetting)",
+        "left = 1.0",
+        ("engine/test_ageing.py",),
+    ),
+    Mutant(
+        "losses in the hub of the pinion without the change of its coefficient",
+        "engine/observers/friction_losses.py",
+        "pinion_rate = rate.pinion_hub * shafts.loads.pinion + rate.pinion_constant",
+        "pinion_rate = rate.pinion_constant",
+        ("engine/test_ageing.py::test_rates_of_the_powers_of_joints_that_age_are_those_along_the_motion",),
     ),
 )

@@ -41,6 +41,14 @@ CHANGES = {
         "gears.pinion_hub_radius": 3e-6,
         "gears.gear_hub_radius": 6e-6,
     },
+    "friction that ages": {
+        "gears.hub_friction_rise": 0.5,
+        "gears.hub_ageing_time": "1 us",
+        "gears.hub_memory_length": "20 nm",
+        "gears.pinion_hub_radius": 3e-6,
+        "gears.gear_hub_radius": 6e-6,
+        "initial.rest_time": "1 us",
+    },
     "pin friction": {
         "drive.law": {
             "name": "microengine",

@@ -83,3 +83,19 @@ def test_no_scene_is_too_odd_to_be_judged():
         scene = random_scene(3, number)
         assert all(isinstance(doubt, str) for doubt in doubts(scene))
         assert json.loads(validity_attribute(scene))
+
+
+def test_ageing_of_nothing_and_memory_of_unusual_length_are_named():
+    ageing = {
+        "gears.hub_ageing_time": "1 ms",
+        "gears.hub_memory_length": "1 um",
+        "gears.gear_hub_radius": "5 um",
+    }
+    idle = gd.preset("teodorescu2009").replace(
+        {**ageing, "initial.rest_time": "1 s", "gears.hub_friction": 0.2}
+    )
+    for key in ("gears.hub_ageing_time = 1 ms", "gears.hub_memory_length = 1 um", "initial.rest_time = 1 s"):
+        assert f"{key} has no effect without gears.hub_friction_rise" in doubts(idle)
+    (line,) = doubts(idle.replace({"gears.hub_friction_rise": 0.1}))
+    assert line.startswith("gear hub: a memory length of 1 um is unusual")
+    assert doubts(idle.replace({"gears.hub_friction_rise": 0.1, "gears.hub_memory_length": "50 nm"})) == []

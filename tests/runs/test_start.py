@@ -43,7 +43,7 @@ def shortened(case, model, backend):
     if (
         case.stem == "microengine"
     ):  # at rest the times at which a law is looked at depend on the run's duration
-        changes |= {"gears.hub_friction": 0.0}
+        changes |= {"gears.hub_friction": 0.0, "gears.hub_friction_rise": 0.0}
     if scene.roller is not None:  # the impact is in the second half
         half = 2.0 ** math.floor(math.log2(0.6 * scene.roller.height / scene.roller.speed))
     return scene.replace(changes | {"run.duration": half}), half

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import pytest
 
 import gearidae as gd
+from gearidae.runs.rubbing import sliding
 from gearidae.scene.friction import friction_values, has_flank_friction
-from gearidae.scene.joints import has_joint_friction
+from gearidae.scene.joints import has_joint_friction, joints
 
 HIGH = gd.preset("teodorescu2009")
 ENGINE = {"name": "microengine", "radius": 1e-5, "force": 1e-5, "frequency": 600.0}
@@ -122,3 +124,69 @@ def test_self_locking_bounds_the_coefficient() -> None:
     assert HIGH.replace({"contact.friction": 1.61}).contact.friction == 1.61
     with pytest.raises(gd.SceneError, match=r"must be below 1\.615"):
         HIGH.replace({"contact.friction": 1.62})
+
+
+# -- friction that ages ----------------------------------------------------------------------------------------------
+
+AGEING = {
+    "gears.hub_friction": 0.2,
+    "gears.hub_friction_rise": 0.4,
+    "gears.hub_ageing_time": "1 ms",
+    "gears.hub_memory_length": "50 nm",
+    "gears.pinion_hub_radius": "8 um",
+    "gears.gear_hub_radius": "20 um",
+}
+PUSHED = {"drive.law": ENGINE, "drive.pin_radius": 1e-6}
+
+
+@pytest.mark.parametrize(
+    ("changes", "key", "allowed"),
+    [
+        ({"gears.hub_ageing_time": None}, "gears.hub_ageing_time", "required with gears.hub_friction_rise"),
+        (
+            {"gears.hub_memory_length": None},
+            "gears.hub_memory_length",
+            "required with gears.hub_friction_rise",
+        ),
+        ({"gears.hub_friction_rise": 5.1}, "gears.hub_friction_rise", "must lie in 0..5"),
+        ({"gears.hub_friction_rise": -0.1}, "gears.hub_friction_rise", "must lie in 0..5"),
+        ({"drive.pin_friction_rise": 0.1}, "drive.pin_friction_rise", "needs a torque law that has a force"),
+        ({"initial.rest_time": -1.0}, "initial.rest_time", "must lie in 0.."),
+        # fresh it would turn
+        (
+            {"gears.hub_friction_rise": 5.0, "gears.pinion_hub_radius": "8 um"},
+            "gears.pinion_hub_radius",
+            "locks",
+        ),
+    ],
+)
+def test_ageing_that_cannot_be_is_refused(changes, key, allowed):
+    with pytest.raises(gd.SceneError, match=allowed) as error:
+        HIGH.replace(AGEING | changes)
+    assert error.value.key == key
+
+
+def test_a_pin_ages_as_the_hubs_unless_it_has_a_coefficient_of_its_own():
+    def pin(**changes):
+        there = joints(HIGH.replace(AGEING | PUSHED | changes))[-1]
+        return there.coefficient, there.rise, there.ageing_time, there.memory_length
+
+    assert pin() == (0.2, 0.4, 1e-3, 5e-8)
+    assert pin(**{"drive.pin_friction": 0.1})[:2] == (0.1, 0.0)
+    assert pin(**{"drive.pin_friction_rise": 0.3}) == (0.2, 0.3, 1e-3, 5e-8)
+    own = {"drive.pin_friction_rise": 0.3, "drive.pin_ageing_time": 2.0, "drive.pin_memory_length": 3e-8}
+    assert pin(**own, **{"drive.pin_friction": 0.0}) == (0.0, 0.3, 2.0, 3e-8)
+
+
+def test_a_steady_speed_has_the_friction_of_its_own_sliding():
+    """Constant coefficients of that speed balance at the same one; it lies below that of fresh contacts."""
+    scene = HIGH.replace(AGEING | {"gears.hub_memory_length": "100 um", "drive.harmonic": None})
+    speed = gd.studies.steady_speed(scene)
+    assert speed < gd.studies.steady_speed(scene.replace({"gears.hub_friction_rise": 0.0}))
+    pinion, gear = sliding(scene, speed)
+    assert pinion.coefficient == pytest.approx(0.2 - 0.4 * math.expm1(-1e-4 / (4.0 * speed * 8e-6) / 1e-3))
+    mean = 0.5 * (pinion.coefficient + gear.coefficient)
+    constant = gd.studies.steady_speed(
+        scene.replace({"gears.hub_friction_rise": 0.0, "gears.hub_friction": mean})
+    )
+    assert speed == pytest.approx(constant, rel=5e-3)

@@ -13,7 +13,8 @@ from gearidae.scene import PRESETS, Scene, describe_key, describe_keys, load_cas
 CASES = Path(__file__).parents[2] / "cases"
 CONTRACT = {
     "gears": "density pinion_inertia gear_inertia pinion_base_radius module pinion_teeth gear_teeth pressure_angle "
-    "face_width hub_friction pinion_hub_radius gear_hub_radius pinion_hub_adhesion gear_hub_adhesion "
+    "face_width hub_friction hub_friction_rise hub_ageing_time hub_memory_length pinion_hub_radius gear_hub_radius "
+    "pinion_hub_adhesion gear_hub_adhesion "
     "pinion_axial_load gear_axial_load pinion_dimple_radius gear_dimple_radius",
     "mesh": "backlash tip_relief_radius radius_force damping film_damping film_gap static_error static_error.order "
     "static_error.amplitude static_error.phase module driver_base_radius pressure_angle face_width",
@@ -22,10 +23,11 @@ CONTRACT = {
     "coating": "sam_fraction energy hamaker pairing thickness pinion_fraction gear_fraction pinion_table gear_table "
     "friction shear_strength contact_angle",
     "drive": "shaft torque harmonic schedule harmonic.amplitude harmonic.frequency harmonic.order harmonic.phase law "
-    "law.name law.parameters orientation pin_friction pin_radius speed speed_gain",
+    "law.name law.parameters orientation pin_friction pin_friction_rise pin_ageing_time pin_memory_length "
+    "pin_radius speed speed_gain",
     "load": "shaft torque harmonic drag viscous schedule harmonic.amplitude harmonic.frequency harmonic.order "
     "harmonic.phase law law.name law.parameters",
-    "initial": "gear_speed gap mesh_phase",
+    "initial": "gear_speed gap mesh_phase rest_time",
     "run": "asperity_events balance passages exposures duration samples rtol method stop checkpoints largest_step",
     "roller": "radius mass width speed height",
     "contact": "model bodies roughness asperity seed radius_spread asperities friction friction_law shear_strength",

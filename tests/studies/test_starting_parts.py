@@ -63,7 +63,13 @@ def test_parts_add_up_and_axial_loads_are_beside_the_hubs():
 
 def test_a_pin_takes_its_friction_under_the_force_of_the_law():
     scene = gd.load_case("cases/microengine.toml").replace(
-        {**HUBS, "drive.pin_radius": 1.25e-6, "drive.pin_friction": 0.2, "contact.asperity": "hertz"}
+        {
+            **HUBS,
+            "gears.hub_friction_rise": 0.0,
+            "drive.pin_radius": 1.25e-6,
+            "drive.pin_friction": 0.2,
+            "contact.asperity": "hertz",
+        }
     )
     torque = Starting(scene).torque()
     assert part(scene, torque, "pin") == pytest.approx(0.2 * 1.25e-6 * 10e-6, rel=1e-9, abs=0)

@@ -19,7 +19,9 @@ from gearidae.records import (
     COUNTERS,
     ELASTIC_SAMPLES,
     GEAR_SAMPLES,
+    HUB_FRICTION_SAMPLES,
     HUB_SAMPLES,
+    PIN_FRICTION_SAMPLES,
     PIN_SAMPLES,
     POPULATION_SAMPLES,
     ROLLER_SAMPLES,
@@ -109,6 +111,8 @@ SAMPLES: Mapping[str, Variable] = {
         *POPULATION_SAMPLES,
         *HUB_SAMPLES,
         *PIN_SAMPLES,
+        *HUB_FRICTION_SAMPLES,
+        *PIN_FRICTION_SAMPLES,
     )
 }
 

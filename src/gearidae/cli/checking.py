@@ -22,7 +22,7 @@ from gearidae.runs.run_time import run_time
 from gearidae.runs.validity import validity_rows
 from gearidae.scene import GearScene, TrainScene, require_gears
 from gearidae.scene.friction import has_flank_friction
-from gearidae.scene.joints import has_joint_friction, has_pin
+from gearidae.scene.joints import has_joint_friction, has_pin, joints
 from gearidae.scene.sampled import columns_of
 from gearidae.scene.validity_row import contact_subject, mean_note
 
@@ -154,10 +154,10 @@ def _estimates(scene: GearScene) -> Facts:
 
 def _friction(scene: GearScene) -> Facts:
     from gearidae.mesh.friction import hub_share, hub_starting_torque
-    from gearidae.runs.estimates import mean_force
-    from gearidae.runs.rubbing import flank_loss, hub_constants, hub_radii, joint_loads
+    from gearidae.runs.estimates import mean_force, steady_speed
+    from gearidae.runs.rubbing import flank_loss, hub_arms, hub_constants, joint_loads, rested, sliding
 
-    geometry, coefficient, radii = scene.geometry, scene.gears.hub_friction, hub_radii(scene)
+    geometry = scene.geometry
     if has_flank_friction(scene):
         loss = flank_loss(scene, mean_force(scene))
         if math.isnan(loss):
@@ -172,13 +172,21 @@ def _friction(scene: GearScene) -> Facts:
     for joint, load in joint_loads(scene, mean_force(scene)):
         words = f"friction takes {joint.torque(load):.4g} N m of its shaft, {where}"
         yield Fact(f"load of the {joint.name}", f"{load * 1e6:.4g} uN", words, load, "N")
+        if joint.rise > 0.0:
+            speed, after = joint.chatter_speed, joint.of_age(math.inf).torque(load)
+            turning = f"below this sliding speed, {speed / joint.sliding_radius:.4g} rad/s of its shaft, it may chatter"
+            words = f"{turning}; after a long rest friction takes {after:.4g} N m"
+            yield Fact(f"ageing of the {joint.name}", f"{speed * 1e6:.4g} um/s", words, speed, "m s-1")
     if has_pin(scene):
         return
-    lost = 1.0 - hub_share(geometry, coefficient, radii)
+    lost = 1.0 - hub_share(geometry, 1.0, hub_arms(sliding(scene, steady_speed(scene))))
     words = "of the drive's work, without adhesion and axial loads"
     yield Fact("lost to hub friction", f"{100 * lost:.3g} %", words, lost, "1")
-    start = hub_starting_torque(geometry, scene.load.torque, coefficient, radii, hub_constants(scene))
+    there = rested(scene)
+    start = hub_starting_torque(geometry, scene.load.torque, 1.0, hub_arms(there), hub_constants(there))
     words = "of the pinion: dry resistance and hubs, without the teeth"
+    if there != joints(scene):
+        words += f"; after {scene.initial.rest_time:g} s of rest"
     yield Fact("starting torque", f"{start:.4g} N m", words, start, "N m")
 
 

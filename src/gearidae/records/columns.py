@@ -114,12 +114,25 @@ PIN_SAMPLES: Final = (
     ),
 )
 
+_OF_INSTANT: Final = "of the instant: it grows with the time at rest, and sliding forgets that"
+HUB_FRICTION_SAMPLES: Final = (
+    Column("pinion_hub_friction", "1", "coefficient of friction of the pinion's hub", _OF_INSTANT, "0.3"),
+    Column("gear_hub_friction", "1", "coefficient of friction of the gear's hub", _OF_INSTANT, "0.3"),
+)
+PIN_FRICTION_SAMPLES: Final = (
+    Column(
+        "pin_friction", "1", "coefficient of friction of the pin that drives the pinion", _OF_INSTANT, "0.3"
+    ),
+)
+
 GEAR_COLUMNS = tuple(column.name for column in GEAR_SAMPLES)
 ROLLER_COLUMNS = tuple(column.name for column in ROLLER_SAMPLES)
 ELASTIC_COLUMNS = tuple(column.name for column in ELASTIC_SAMPLES)
 POPULATION_COLUMNS = tuple(column.name for column in POPULATION_SAMPLES)
 HUB_COLUMNS = tuple(column.name for column in HUB_SAMPLES)
 PIN_COLUMNS = tuple(column.name for column in PIN_SAMPLES)
+HUB_FRICTION_COLUMNS = tuple(column.name for column in HUB_FRICTION_SAMPLES)
+PIN_FRICTION_COLUMNS = tuple(column.name for column in PIN_FRICTION_SAMPLES)
 """Additional columns of elastic contacts, of populations, of hubs and of a pin, after the others."""
 
 
@@ -137,10 +150,13 @@ def sampled_columns(
     roughness: str = "statistical",
     hubs: bool = False,
     pin: bool = False,
+    ages: bool = False,
 ) -> tuple[str, ...]:
     """Names of what is sampled of gears or a roller, by ``contact.bodies``, ``contact.roughness`` and joints."""
     more = ELASTIC_COLUMNS if bodies == "elastic" else ()
     more += POPULATION_COLUMNS if roughness == "discrete" else ()
     more += HUB_COLUMNS if hubs else ()
     more += PIN_COLUMNS if pin else ()
+    more += HUB_FRICTION_COLUMNS if hubs and ages else ()
+    more += PIN_FRICTION_COLUMNS if pin and ages else ()
     return (ROLLER_COLUMNS if roller else GEAR_COLUMNS) + more

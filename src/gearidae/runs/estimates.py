@@ -13,9 +13,11 @@ from gearidae.errors import SceneError
 from gearidae.laws.law import DRIVE, LOAD
 from gearidae.laws.shafts import slowing
 from gearidae.mesh.pair_contact import PairContact, pair_contact
-from gearidae.runs.rubbing import hub_constants, transmitted_share
+from gearidae.runs.rubbing import hub_constants, sliding, transmitted_share
 from gearidae.scene import GearScene, RollerScene, Scene, require_gears
+from gearidae.scene.joints import joints
 
+_PASSES = 200  # to a speed whose friction depends on it
 _INNERMOST = -8.0  # a gap in roughnesses: teeth pressed deeper do not rest on their asperities
 
 
@@ -89,8 +91,9 @@ def steady_speed(scene: Scene) -> float:
         w2 of ``(M1 + g (w - w2 R2/R1)) R2/R1 = M2 + c w2 + alpha w2^2`` [rad/s], with the constants and the means of
         the schedules as torques M1 and M2, the viscous drag c and a drive that holds the mean speed w with the gain g;
         0 if the drive does not overcome the dry resistance, infinite if nothing slows the gear down. Friction leaves
-        the gear `transmitted_share` of the left side, and takes `hub_constants` besides. Harmonics and laws are left
-        out. (Teodorescu et al. 2009, Eq. 3, prints the ratio upside down.)
+        the gear `transmitted_share` of the left side, and takes `hub_constants` besides; friction that ages is that
+        of steady sliding, and the highest speed that balances counts. Harmonics and laws are left out. (Teodorescu et
+        al. 2009, Eq. 3, prints the ratio upside down.)
 
     Raises
     ------
@@ -121,7 +124,14 @@ def waiting_speed(scene: GearScene) -> float:
 
 def balanced_speed(scene: GearScene, torque: float) -> float:
     """Speed of the gear [rad/s] at which a constant torque of the pinion [N m] is balanced, see `steady_speed`."""
-    return _balance(scene, torque, transmitted_share(scene, mean_force(scene)), hub_constants(scene))
+    load, speed = mean_force(scene), math.inf
+    # friction falls with the speed, so that the speeds fall towards the highest that balances
+    for _ in range(_PASSES):
+        there, before = sliding(scene, speed), speed
+        speed = _balance(scene, torque, transmitted_share(scene, load, there), hub_constants(there))
+        if speed == before or all(joint.rise == 0.0 for joint in joints(scene)):
+            break
+    return speed
 
 
 def _balance(

@@ -7,6 +7,7 @@ import math
 from typing import TYPE_CHECKING, Final
 
 from gearidae.scene import TrainScene
+from gearidae.scene.joints import joints
 from gearidae.scene.prefixes import with_prefix
 from gearidae.torques import torque_law
 
@@ -19,6 +20,8 @@ _KEPT: Final = (("pinion", 1.5263e-20, 19), ("gear", 6.1052e-20, 76))
 """Inertias [kg m^2] and teeth of the presets' gears,"""
 _KEPT_SIZE: Final = (34.715e-6, 2e-6)
 """their pinion's base radius and their face width [m]."""
+_MEMORY: Final = (20e-9, 100e-9)
+"""Usual memory lengths of rubbing surfaces [m]: the size of their contacts."""
 _PEAKS: Final = 6.0
 """Height of a rough surface from valley to peak, in rms roughnesses."""
 
@@ -160,7 +163,8 @@ def _idle(scene: Scene) -> list[str]:
         lines.append(f"surface.hamaker = {with_prefix(scene.surface.hamaker, 'J')} {words}")
     if scene.gears is None or scene.mesh is None:
         return lines
-    if scene.gears.hub_friction == 0.0:
+    lines += _idle_ageing(scene)
+    if scene.gears.hub_friction == 0.0 == scene.gears.hub_friction_rise:
         for key in ("pinion_axial_load", "gear_axial_load", "pinion_hub_adhesion", "gear_hub_adhesion"):
             load = getattr(scene.gears, key)
             if load > 0.0:
@@ -170,3 +174,30 @@ def _idle(scene: Scene) -> list[str]:
         words = "has no effect without mesh.film_damping"
         lines.append(f"mesh.film_gap = {with_prefix(scene.mesh.film_gap, 'm')} {words}")
     return lines
+
+
+def _idle_ageing(scene: Scene) -> list[str]:
+    """Name times that nothing ages by, and memory lengths far from the size of contacts."""
+    gears, drive, start, there = scene.gears, scene.drive, scene.initial, joints(scene)
+    if gears is None or drive is None or start is None:
+        return []
+    lines = [
+        f"{joint.name}: a memory length of {with_prefix(joint.memory_length, 'm')} is unusual: measured ones are some"
+        " 20 to 100 nm, the size of contacts"
+        for joint in there
+        if joint.rise > 0.0 and not _MEMORY[0] <= joint.memory_length <= _MEMORY[1]
+    ]
+    if any(joint.rise > 0.0 for joint in there):
+        return lines
+    values = {
+        "gears.hub_ageing_time": (gears.hub_ageing_time, "s"),
+        "gears.hub_memory_length": (gears.hub_memory_length, "m"),
+        "drive.pin_ageing_time": (drive.pin_ageing_time, "s"),
+        "drive.pin_memory_length": (drive.pin_memory_length, "m"),
+        "initial.rest_time": (start.rest_time, "s"),
+    }
+    return [
+        f"{key} = {with_prefix(value, unit)} has no effect without gears.hub_friction_rise"
+        for key, (value, unit) in values.items()
+        if value
+    ]

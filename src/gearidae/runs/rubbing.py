@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -60,14 +60,30 @@ def flank_loss(scene: Scene, load: float) -> float:
     return loss_fraction(scene.geometry, coefficient) if coefficient != 0.0 else 0.0
 
 
-def hub_radii(scene: GearScene) -> tuple[float, float]:
-    """Radii of the hubs of pinion and gear [m]."""
-    return scene.gears.pinion_hub_radius, scene.gears.gear_hub_radius
+def rested(scene: Scene) -> tuple[Joint, ...]:
+    """List the joints with the coefficients that they have after ``initial.rest_time``."""
+    age = scene.initial.rest_time if scene.initial is not None else 0.0
+    return tuple(joint.of_age(age) for joint in joints(scene))
 
 
-def hub_constants(scene: Scene) -> tuple[float, float]:
+def sliding(scene: GearScene, gear_speed: float) -> tuple[Joint, ...]:
+    """List the joints with the coefficients that they have in steady sliding at a speed of the gear [rad/s]."""
+    ratio = scene.gears.gear_teeth / scene.gears.pinion_teeth
+    return tuple(
+        joint.of_age(joint.sliding_age(gear_speed * (1.0 if joint.name == "gear hub" else ratio)))
+        for joint in joints(scene)
+    )
+
+
+def hub_arms(there: Iterable[Joint]) -> tuple[float, float]:
+    """Coefficients times radii of the hubs of pinion and gear [m]."""
+    arms = {joint.name: joint.arm for joint in there}
+    return arms.get("pinion hub", 0.0), arms.get("gear hub", 0.0)
+
+
+def hub_constants(there: Iterable[Joint]) -> tuple[float, float]:
     """Torques of the hubs of pinion and gear without a load of the teeth: of adhesion and axial loads [N m]."""
-    taken = {joint.name: joint.torque(0.0) for joint in joints(scene)}
+    taken = {joint.name: joint.torque(0.0) for joint in there}
     return taken.get("pinion hub", 0.0), taken.get("gear hub", 0.0)
 
 
@@ -102,8 +118,8 @@ def _pin_forces(scene: GearScene) -> Floats:
     return np.array(values, np.float64)[:, 1:]
 
 
-def transmitted_share(scene: GearScene, load: float) -> float:
-    """Share of the drive's work that friction leaves, at a constant force of the teeth.
+def transmitted_share(scene: GearScene, load: float, there: Iterable[Joint]) -> float:
+    """Share of the drive's work that friction leaves, at a constant force of the teeth and with given joints.
 
     Returns
     -------
@@ -113,7 +129,7 @@ def transmitted_share(scene: GearScene, load: float) -> float:
     """
     loss = flank_loss(scene, load)
     left = 1.0 if math.isnan(loss) else max(1.0 - loss, 0.0)
-    return left * hub_share(scene.geometry, scene.gears.hub_friction, hub_radii(scene))
+    return left * hub_share(scene.geometry, 1.0, hub_arms(there))
 
 
 _NEAR_LOCKING: Final = 0.5
@@ -131,8 +147,9 @@ def locking_rows(scene: GearScene) -> Iterator[ValidityRow]:
         yield _near_locking("locking_teeth", "coefficient of friction of the flanks", where, locks, "teeth")
     bases = {"pinion hub": geometry.base_radius_pinion, "gear hub": geometry.base_radius_gear}
     ratios = [joint.radius / bases[joint.name] for joint in joints(scene) if joint.name in bases]
-    if gears.hub_friction > 0.0 and any(ratios):
-        quantity, coefficient = "coefficient of friction of the hubs", gears.hub_friction
+    highest = gears.hub_friction + gears.hub_friction_rise
+    if highest > 0.0 and any(ratios):
+        quantity, coefficient = "coefficient of friction of the hubs", highest
         yield _near_locking("locking_hubs", quantity, coefficient, 1.0 / max(ratios), "hubs")
 
 

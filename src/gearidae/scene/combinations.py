@@ -49,11 +49,14 @@ FEATURES: Final = {
     "shear friction": Feature("contact.shear_strength", lambda scene: _flanks_rub(scene, "shear")),
     "hub friction": Feature(
         "gears.hub_friction",
-        lambda scene: any(joint.holding and joint.name != "pin" for joint in joints(scene)),
+        lambda scene: any(joint.coefficient > 0.0 and joint.name != "pin" for joint in joints(scene)),
+    ),
+    "friction that ages": Feature(
+        "gears.hub_friction_rise", lambda scene: any(joint.rise > 0.0 for joint in joints(scene))
     ),
     "pin friction": Feature(
         "drive.pin_radius",
-        lambda scene: any(joint.holding and joint.name == "pin" for joint in joints(scene)),
+        lambda scene: any(joint.coefficient > 0.0 and joint.name == "pin" for joint in joints(scene)),
     ),
     "dry resistance": Feature("load.torque", lambda scene: scene.load is not None and scene.load.is_dry),
     "maugis asperities": Feature("contact.asperity", lambda scene: scene.contact.asperity == "maugis"),

@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from gearidae.errors import SceneError
 from gearidae.scene.group import Group, shorten
 from gearidae.scene.quantity import Count, Phase, Quantity, Switch
-from gearidae.scene.surface import Friction
+from gearidae.scene.surface import AgeingTime, Friction, FrictionRise, MemoryLength
 from gearidae.scene.tables import one_or_more
 
 Inertia = Annotated[float, Quantity(unit="kg m^2", at_least=1e-40, at_most=1)]
@@ -65,7 +65,20 @@ class Gears(Group):
     face_width: Annotated[float, Quantity(unit="m", at_least=1e-10, at_most=1, shown=("um", -6))] = Field(
         description="width of the teeth along the axis, L"
     )
-    hub_friction: Friction = Field(default=0.0, description="coefficient of friction of both hubs")
+    hub_friction: Friction = Field(
+        default=0.0,
+        description="coefficient of friction of both hubs that slide; with a rise, of fresh contacts",
+    )
+    hub_friction_rise: FrictionRise = Field(
+        default=0.0, description="by how much that coefficient grows with time at rest, towards a long one"
+    )
+    hub_ageing_time: AgeingTime = Field(
+        default=None, description="time at rest of 63 % of the rise; needed with one"
+    )
+    hub_memory_length: MemoryLength = Field(
+        default=None,
+        description="way of the hubs' surfaces on which the rise is forgotten, some 20 to 100 nm; needed with one",
+    )
     pinion_hub_radius: HubRadius = Field(
         default=0.0, description="radius of the pinion's hub, 0 for one without friction"
     )

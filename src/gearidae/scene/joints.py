@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import KW_ONLY, dataclass
+import math
+from dataclasses import KW_ONLY, dataclass, replace
 from typing import TYPE_CHECKING
 
 from gearidae.errors import SceneError
@@ -24,9 +25,15 @@ class Joint:
     name : str
         "pinion hub", "gear hub" or "pin".
     coefficient : float
-        Of friction [1].
+        Of friction of fresh contacts, which slide [1].
     radius : float
         [m].
+    rise : float
+        By how much the coefficient grows with the time at rest [1].
+    ageing_time : float
+        Time at rest in which 63 % of the rise are there [s]; infinite without a rise.
+    memory_length : float
+        Way of the surfaces on which the rise is forgotten [m]; infinite without one.
     adhesion : float
         Part of the load that adhesion adds [N].
     axial_load, dimple_radius : float
@@ -37,19 +44,55 @@ class Joint:
     coefficient: float
     radius: float
     _: KW_ONLY
+    rise: float = 0.0
+    ageing_time: float = math.inf
+    memory_length: float = math.inf
     adhesion: float = 0.0
     axial_load: float = 0.0
     dimple_radius: float = 0.0
 
     @property
     def arm(self) -> float:
-        """Torque of friction over the load across the axis [m]."""
+        """Torque of friction of fresh contacts over the load across the axis [m]."""
         return self.coefficient * self.radius
+
+    @property
+    def largest(self) -> float:
+        """Coefficient after a long rest [1]."""
+        return self.coefficient + self.rise
+
+    @property
+    def holding_torque(self) -> float:
+        """Torque over the coefficient without a load across the axis [N m]."""
+        return self.radius * self.adhesion + self.dimple_radius * self.axial_load
+
+    @property
+    def sliding_radius(self) -> float:
+        """Radius at which the surfaces slide [m]: that of the joint, or of its dimples where it has none."""
+        return self.radius if self.radius > 0.0 else self.dimple_radius
+
+    @property
+    def chatter_speed(self) -> float:
+        """Sliding speed [m/s] below which the coefficient has most of its fall, ``D_c/tau``; 0 without a rise."""
+        return self.memory_length / self.ageing_time if self.rise > 0.0 else 0.0
+
+    def aged(self, age: float) -> float:
+        """Coefficient of contacts of an age [s], ``mu_d + dmu (1 - exp(-theta/tau))``."""
+        return self.coefficient - self.rise * math.expm1(-age / self.ageing_time)
+
+    def sliding_age(self, speed: float) -> float:
+        """Age of the contacts [s] in steady sliding at an angular speed [rad/s], ``D_c/v``."""
+        way = abs(speed) * self.sliding_radius
+        return self.memory_length / way if way > 0.0 else math.inf
 
     @property
     def axial_torque(self) -> float:
         """Torque of friction of the axial load [N m]."""
         return self.coefficient * self.dimple_radius * self.axial_load
+
+    def of_age(self, age: float) -> Joint:
+        """Return a joint whose friction does not age, with the coefficient of contacts of an age [s]."""
+        return replace(self, coefficient=self.aged(age), rise=0.0) if self.rise > 0.0 else self
 
     def torque(self, load: float) -> float:
         """Return the torque [N m] that friction takes, or holds, under a load across the axis [N]."""
@@ -59,9 +102,9 @@ class Joint:
     def holding(self) -> Holding:
         """What of the joint may hold a gear."""
         holding = Holding(0)
-        if self.arm > 0.0:
+        if self.largest * self.radius > 0.0:
             holding |= Holding.PIN_FRICTION if self.name == "pin" else Holding.HUB_FRICTION
-        if self.axial_torque > 0.0:
+        if self.largest * self.dimple_radius * self.axial_load > 0.0:
             holding |= Holding.AXIAL_LOAD
         return holding
 
@@ -82,8 +125,7 @@ def joints(scene: Scene) -> tuple[Joint, ...]:
     if gears is None or drive is None:
         return ()
     hubs = (_hub(gears, "pinion"), _hub(gears, "gear"))
-    coefficient = gears.hub_friction if drive.pin_friction is None else drive.pin_friction
-    every = (*hubs, Joint("pin", coefficient, drive.pin_radius))
+    every = (*hubs, _pin(gears, drive))
     return tuple(
         joint for joint in every if joint.radius > 0.0 or joint.dimple_radius * joint.axial_load > 0.0
     )
@@ -91,7 +133,27 @@ def joints(scene: Scene) -> tuple[Joint, ...]:
 
 def _hub(gears: Gears, shaft: str) -> Joint:
     keys = {name: getattr(gears, f"{shaft}_{key}") for name, key in _HUB_KEYS.items()}
-    return Joint(f"{shaft} hub", gears.hub_friction, **keys)
+    ageing = _ageing(gears.hub_friction_rise, gears.hub_ageing_time, gears.hub_memory_length)
+    return Joint(f"{shaft} hub", gears.hub_friction, **keys, **ageing)
+
+
+def _pin(gears: Gears, drive: Drive) -> Joint:
+    """Pin with the friction of the hubs, or with its own, which does not grow unless it says so."""
+    coefficient, rise = drive.pin_friction, drive.pin_friction_rise
+    if rise is None:
+        rise = gears.hub_friction_rise if coefficient is None else 0.0
+    times = drive.pin_ageing_time, gears.hub_ageing_time
+    lengths = drive.pin_memory_length, gears.hub_memory_length
+    ageing = _ageing(rise, *(first if first is not None else second for first, second in (times, lengths)))
+    coefficient = gears.hub_friction if coefficient is None else coefficient
+    return Joint("pin", coefficient, drive.pin_radius, **ageing)
+
+
+def _ageing(rise: float, time: float | None, length: float | None) -> dict[str, float]:
+    """What a joint ages by; scenes are checked for what a rise needs."""
+    if time is None or length is None:
+        return {"rise": rise}
+    return {"rise": rise, "ageing_time": time, "memory_length": length}
 
 
 _HUB_KEYS = {
@@ -117,22 +179,24 @@ def check_joints(scene: GearScene) -> None:
         Naming the key.
     """
     _check_pin(scene)
+    _check_ageing(scene)
     gears, there = scene.gears, {joint.name: joint for joint in joints(scene)}
     for shaft in ("pinion", "gear"):
         for load, radius in (("hub_adhesion", "hub_radius"), ("axial_load", "dimple_radius")):
             if getattr(gears, f"{shaft}_{load}") > 0.0 and getattr(gears, f"{shaft}_{radius}") == 0.0:
                 raise SceneError(f"gears.{shaft}_{radius}", 0.0, f"must be above 0 with gears.{shaft}_{load}")
-    if gears.hub_friction > 0.0 and not there:
-        raise SceneError(
-            "gears.pinion_hub_radius",
-            0.0,
-            "a hub, a dimple or the pin must have a radius with gears.hub_friction",
-        )
+    for key in ("hub_friction", "hub_friction_rise"):
+        if getattr(gears, key) > 0.0 and not there:
+            raise SceneError(
+                "gears.pinion_hub_radius",
+                0.0,
+                f"a hub, a dimple or the pin must have a radius with gears.{key}",
+            )
     radii = {"pinion": scene.geometry.base_radius_pinion, "gear": scene.geometry.base_radius_gear}
     for shaft, base in radii.items():
         hub = there.get(f"{shaft} hub")
-        if hub is not None and hub.arm >= base:
-            limit = base / hub.coefficient
+        if hub is not None and hub.largest * hub.radius >= base:
+            limit = base / hub.largest
             reason = f"must be below {limit:.4g} m: the hub locks the {shaft} from there on"
             raise SceneError(f"gears.{shaft}_hub_radius", hub.radius, reason)
     _check_circle(scene, there)
@@ -148,7 +212,7 @@ def _check_pin(scene: GearScene) -> None:
     values = {
         "orientation": drive.orientation,
         "pin_radius": drive.pin_radius,
-        "pin_friction": drive.pin_friction,
+        **{key: getattr(drive, key) for key in _PIN_FRICTION},
     }
     for key, value in values.items():
         if value and not pushes(drive):
@@ -157,8 +221,34 @@ def _check_pin(scene: GearScene) -> None:
                 value,
                 "needs a torque law that has a force, as microengine: a couple has no pin",
             )
-    if drive.pin_friction and drive.pin_radius == 0.0:
-        raise SceneError("drive.pin_radius", 0.0, "must be above 0 with drive.pin_friction")
+    for key in _PIN_FRICTION:
+        if getattr(drive, key) and drive.pin_radius == 0.0:
+            raise SceneError("drive.pin_radius", 0.0, f"must be above 0 with drive.{key}")
+
+
+_PIN_FRICTION = ("pin_friction", "pin_friction_rise", "pin_ageing_time", "pin_memory_length")
+"""Keys of the friction of a pin."""
+
+
+def _check_ageing(scene: GearScene) -> None:
+    """Refuse a rise of friction without a time and a length."""
+    gears, drive = scene.gears, scene.drive
+    hub, pin = (
+        (gears.hub_ageing_time, gears.hub_memory_length),
+        (drive.pin_ageing_time, drive.pin_memory_length),
+    )
+    rises = (
+        ("gears.hub", gears.hub_friction_rise, hub),
+        (
+            "drive.pin",
+            drive.pin_friction_rise,
+            tuple(own or other for own, other in zip(pin, hub, strict=True)),
+        ),
+    )
+    for key, rise, values in rises:
+        for name, value in zip(("ageing_time", "memory_length"), values, strict=True):
+            if rise and value is None:
+                raise SceneError(f"{key}_{name}", "(missing)", f"is required with {key}_friction_rise")
 
 
 def _check_circle(scene: Scene, there: dict[str, Joint]) -> None:
@@ -167,7 +257,7 @@ def _check_circle(scene: Scene, there: dict[str, Joint]) -> None:
     circle = (
         (drive.law.model_extra or {}).get("radius") if drive is not None and drive.law is not None else None
     )
-    taken = sum(joint.arm for name, joint in there.items() if name != "gear hub")
+    taken = sum(joint.largest * joint.radius for name, joint in there.items() if name != "gear hub")
     if has_pin(scene) and isinstance(circle, float) and taken >= circle:
         raise SceneError(
             "drive.pin_radius",

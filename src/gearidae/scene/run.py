@@ -32,6 +32,10 @@ class Initial(Group):
         description="position of pair 0 on the path of contact, in base pitches; with whole pitches another pair, and "
         "tooth of the pinion, is in mesh",
     )
+    rest_time: Annotated[float, Quantity(unit="s", at_least=0, at_most=1e12, shown=("ms", -3))] = Field(
+        default=0.0,
+        description="how long the device has stood before, for hubs and a pin whose friction ages",
+    )
 
 
 def _read_stop(value: object) -> str:

@@ -13,13 +13,15 @@ if TYPE_CHECKING:
 
 def columns_of(scene: Scene) -> tuple[str, ...]:
     """Names of the sampled columns of a scene."""
-    contact, hubs = scene.contact, bool(joints(scene))
+    contact, there = scene.contact, joints(scene)
+    hubs = bool(there)
     return sampled_columns(
         roller=scene.roller is not None,
         bodies=contact.bodies,
         roughness=contact.roughness,
         hubs=hubs,
         pin=hubs and has_pin(scene),
+        ages=any(joint.rise > 0.0 for joint in there),
     )
 
 

@@ -24,6 +24,11 @@ _STRENGTH = Quantity(unit="Pa", at_least=0, at_most=1e12, least=1.0, shown=("MPa
 Friction = Annotated[float, _FRICTION]
 Strength = Annotated[float, _STRENGTH]
 OptionalFriction = Annotated[float | None, _FRICTION]
+_RISE = Quantity(unit="1", at_least=0, at_most=5, least=1e-6)
+FrictionRise = Annotated[float, _RISE]
+OptionalRise = Annotated[float | None, _RISE]
+AgeingTime = Annotated[float | None, Quantity(unit="s", at_least=1e-12, at_most=1e12, shown=("ms", -3))]
+MemoryLength = Annotated[float | None, Quantity(unit="m", at_least=1e-10, at_most=1, shown=("nm", -9))]
 OptionalStrength = Annotated[float | None, _STRENGTH]
 
 

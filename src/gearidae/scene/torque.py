@@ -19,7 +19,7 @@ from gearidae.scene.group import Group, shorten
 from gearidae.scene.knots import Knots, Resistance, ResistanceSchedule, Schedule, Scheduled, Time, Torque
 from gearidae.scene.named import Named
 from gearidae.scene.quantity import Phase, Quantity
-from gearidae.scene.surface import OptionalFriction
+from gearidae.scene.surface import AgeingTime, MemoryLength, OptionalFriction, OptionalRise
 from gearidae.scene.tables import increasing, one_or_more, pairs
 from gearidae.scene.units import to_si
 from gearidae.torques import Parameter, torque_law, torque_names
@@ -191,6 +191,16 @@ class Drive(Group):
     pin_radius: HubRadius = Field(default=0.0, description="radius of the pin joint of a law with a force")
     pin_friction: OptionalFriction = Field(
         default=None, description="coefficient of friction of that joint; default gears.hub_friction"
+    )
+    pin_friction_rise: OptionalRise = Field(
+        default=None,
+        description="rise of it with time at rest; default gears.hub_friction_rise, or 0 with pin_friction",
+    )
+    pin_ageing_time: AgeingTime = Field(
+        default=None, description="time at rest of 63 % of that rise; default gears.hub_ageing_time"
+    )
+    pin_memory_length: MemoryLength = Field(
+        default=None, description="way on which that rise is forgotten; default gears.hub_memory_length"
     )
 
     @model_validator(mode="after")

@@ -22,10 +22,11 @@ from gearidae.runs.run_cache import RunCache
 from gearidae.runs.running import FAILS, failure_of, solve_to_end, unfinished, unsolved
 from gearidae.scene import require_gears
 from gearidae.scene.carried import numbers_of
+from gearidae.scene.joints import joints
 from gearidae.scene.quantity import number, switch, whole
 from gearidae.studies._starting_seeds import starting_torques
 from gearidae.studies.bracket import STRIDE, bracket, next_value
-from gearidae.studies.declared.starting_torque import STUDY
+from gearidae.studies.declared.starting_torque import RESTS, STUDY
 from gearidae.studies.requirements import require_constant
 from gearidae.studies.starting_parts import PARTS, Starting, parts_of
 from gearidae.studies.starting_ramp import nothing_followed, pitch_of
@@ -33,6 +34,7 @@ from gearidae.studies.starting_ramp import nothing_followed, pitch_of
 if TYPE_CHECKING:
     from gearidae.records import Solution
     from gearidae.scene import GearScene, Scene
+    from gearidae.studies.study import Study
 
 log = logging.getLogger(__name__)
 
@@ -100,6 +102,7 @@ def starting_torque(
     simulated: bool = True,
     tolerance: float = 0.1,
     seeds: int | None = None,
+    rest_time: ArrayLike | None = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
     """Smallest drive torque that takes the gear through the mesh, against SAM fraction; of a population, by its gears.
@@ -123,6 +126,9 @@ def starting_torque(
     seeds : int, optional
         Of a population the number of gears, 20 by default, whose seeds count from ``contact.seed`` on. `impacts`,
         `lowest`, `simulated` and `tolerance` are not for populations.
+    rest_time : array_like, optional
+        Times at rest before the start, in seconds or with a unit, in place of ``initial.rest_time``: of hubs or a pin
+        whose friction ages. Neither for populations nor with other fractions of the coating.
     **options
         ``executor``, ``jobs``, ``backend``, ``progress``, ``archive``, ``overwrite`` and ``resume``, as for `sweep`.
         With ``archive``, finished runs are kept beside it until it is written.
@@ -135,7 +141,7 @@ def starting_torque(
         less. Both are what dry resistance and joints take where adhesion does not hold even at the lowest torque, and
         NaN without `simulated`. ``parts`` divides the static torque along ``part``: dry resistance, adhesion of teeth,
         friction of flanks, hubs, pin, axial loads. All in N m on the pinion. The scene's own constant torque is the
-        attribute ``drive_torque``; ``message`` names the run that failed.
+        attribute ``drive_torque``; ``message`` names the run that failed. With `rest_time` the same, dims (rest_time).
 
         Of a population, dims (sam_fraction, seed): ``starting_torque``, at the last moment of rest before the gear has
         turned one pitch, while the torque rises linearly; its ``parts`` along ``part``; ``starts``, whether the drive's
@@ -148,7 +154,8 @@ def starting_torque(
     Raises
     ------
     SceneError
-        If the scene has no gears, its load follows a schedule, or a setting is not allowed.
+        If the scene has no gears, its load follows a schedule, or a setting is not allowed; if friction of no joint
+        ages with `rest_time`.
     SolverError
         If no gear, or no coverage, could be followed. Otherwise what has failed is named in the log, and its torque is
         NaN.
@@ -165,6 +172,7 @@ def starting_torque(
     if not 0.001 <= tolerance <= 1.0:
         raise SceneError("tolerance", tolerance, "must lie in 0.001..1")
     base, execution = prepared(scene, options)
+    rests = None if rest_time is None else _rests(base, rest_time, sam_fraction)
     if base.contact.is_discrete:
         _refuse_settings(impacts=impacts, lowest=lowest, simulated=simulated, tolerance=tolerance)
         return starting_torques(
@@ -174,8 +182,11 @@ def starting_torque(
         raise SceneError(
             "seeds", seeds, 'needs contact.roughness = "discrete": others do not differ by their seeds'
         )
-    fractions, scenes = _coatings(base, sam_fraction)
-    least = _lowest(scene, lowest)
+    if rests is None:
+        points, scenes = _coatings(base, sam_fraction)
+    else:
+        points, scenes = rests, [base.replace({"initial.rest_time": time}) for time in rests]
+    study, least = STUDY if rests is None else RESTS, _lowest(scene, lowest)
 
     def work(kept: RunCache | None) -> xr.Dataset:
         static = [static_starting_torque(variant, impacts=impacts, lowest=least) for variant in scenes]
@@ -184,13 +195,26 @@ def starting_torque(
         ]
         if simulated:
             _search_all(searches, tolerance, execution, kept)
-        return _dataset(scene, fractions, searches, simulated=simulated).assign_attrs(
+        return _dataset(scene, study, points, searches, simulated=simulated).assign_attrs(
             impacts=impacts, tolerance=tolerance
         )
 
-    return STUDY.compute(
-        execution, base, work, [fractions, impacts, least, simulated, tolerance], origin=scene
+    settings = [points, impacts, least, simulated, tolerance]
+    return study.compute(
+        execution, base, work, settings if rests is None else [RESTS.kind, *settings], origin=scene
     )
+
+
+def _rests(base: GearScene, rest_time: ArrayLike, sam_fraction: ArrayLike | None) -> list[float]:
+    """Read times at rest, and refuse what does not go with them."""
+    if base.contact.is_discrete:
+        raise SceneError("rest_time", rest_time, "is not for a population: set initial.rest_time")
+    if sam_fraction is not None and not (isinstance(sam_fraction, str) and sam_fraction == "own"):
+        raise SceneError("sam_fraction", sam_fraction, "must be left out with rest_time: one of both varies")
+    if all(joint.rise == 0.0 for joint in joints(base)):
+        allowed = "needs friction that ages: gears.hub_friction_rise or drive.pin_friction_rise"
+        raise SceneError("rest_time", rest_time, allowed)
+    return [float(time) for time in np.atleast_1d(numbers_of(rest_time, "s"))]
 
 
 def _refuse_settings(**settings: Any) -> None:
@@ -214,7 +238,7 @@ def _coatings(base: GearScene, sam_fraction: ArrayLike | None) -> tuple[list[flo
 
 
 def _dataset(
-    scene: GearScene, fractions: Sequence[float], searches: Sequence[_Search], *, simulated: bool
+    scene: GearScene, study: Study, points: Sequence[float], searches: Sequence[_Search], *, simulated: bool
 ) -> xr.Dataset:
     results = [search.result if simulated else (math.nan, math.nan) for search in searches]
     turns, sticks = map(np.array, zip(*results, strict=True))
@@ -226,14 +250,20 @@ def _dataset(
         "parts": np.array([parts_of(search.scene, search.static) for search in searches]),
         "message": np.array([search.failure for search in searches]),
     }
+    key, against = "coating.sam_fraction", "SAM fraction"
+    if study is RESTS:
+        key, against = "initial.rest_time", "time at rest"
+        values["rest_time"] = np.array(points)
     attributes = {
-        **provenance(scene, "searched the starting torque", swept=("coating.sam_fraction",)),
+        **provenance(scene, "searched the starting torque", swept=(key,)),
         "title": f"{scene.name}: starting torque",
-        "summary": "Smallest drive torque that keeps the gear turning against adhesion, against SAM fraction.",
+        "summary": f"Smallest drive torque that keeps the gear turning against adhesion, against {against}.",
         "drive_torque": scene.drive.torque,
     }
-    coverage = ("sam_fraction", np.array(fractions), SAM_FRACTION.attributes)
-    return STUDY.dataset(values, attributes).assign_coords(sam_fraction=coverage)
+    ds = study.dataset(values, attributes)
+    if study is RESTS:
+        return ds
+    return ds.assign_coords(sam_fraction=("sam_fraction", np.array(points), SAM_FRACTION.attributes))
 
 
 @dataclass
@@ -323,7 +353,8 @@ def _run_from_rest(scene: GearScene, way: float, backend: str) -> tuple[Solution
     solution = solve_to_end(scene, backend)
     if solution.status != "finished":
         coverage = 100.0 * float(np.mean(scene.coating.fractions))
-        words = f"the run of SAM {coverage:.4g} % at {scene.drive.torque:g} N m"
+        rest = f" after {scene.initial.rest_time:g} s of rest" if scene.initial.rest_time > 0.0 else ""
+        words = f"the run of SAM {coverage:.4g} %{rest} at {scene.drive.torque:g} N m"
         return solution, f"{FAILS}{unfinished(solution, words)}"
     angle, none = solution.samples["gear_angle"], unsolved("", "")
     word = "turns" if angle.max() - angle[0] >= way else "sticks"

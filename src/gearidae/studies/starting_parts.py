@@ -7,10 +7,10 @@ With all dry friction at its limit, and the force F of the teeth,
     F\,(R_2 + \Sigma f r_2 - \mu r_{h2} c) = M_{20} + H + m_2, \qquad
     M_1 = F\,(R_1 + \Sigma f r_1 + \mu r_{h1} c) + m_1,
 
-where H is what adhesion of the teeth holds at the gear, f the friction of the flanks over the force of the teeth,
-:math:`c = \sqrt{1 + (\Sigma f)^2}`, and m what the joints of a shaft take without a force of the teeth: adhesion and
-axial loads, and the force of a pin. The torque is taken at the worst place of the mesh
-(`gearidae.mesh.friction.starting_ratio`).
+where friction of the joints is that after ``initial.rest_time``, H is what adhesion of the teeth holds at the gear,
+f the friction of the flanks over the force of the teeth, :math:`c = \sqrt{1 + (\Sigma f)^2}`, and m what the joints of
+a shaft take without a force of the teeth: adhesion and axial loads, and the force of a pin. The torque is taken at the
+worst place of the mesh (`gearidae.mesh.friction.starting_ratio`).
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from numpy.typing import ArrayLike
 from gearidae.arrays import Floats
 from gearidae.mesh.friction import starting_ratio
 from gearidae.runs.estimates import mean_force
-from gearidae.runs.rubbing import flank_coefficient, hub_radii, joint_loads
+from gearidae.runs.rubbing import flank_coefficient, hub_arms, joint_loads, rested
 
 if TYPE_CHECKING:
     from gearidae.scene import GearScene
@@ -56,9 +56,8 @@ class Starting:
     @cached_property
     def ratio(self) -> float:
         """Torque of the pinion over the resistance of the gear that the teeth carry; infinite where it locks."""
-        gears, geometry = self.scene.gears, self.scene.geometry
-        hubs = gears.hub_friction if "hubs" in self.elements else 0.0
-        return starting_ratio(geometry, self._flanks, hubs, hub_radii(self.scene))
+        arms = hub_arms(rested(self.scene)) if "hubs" in self.elements else (0.0, 0.0)
+        return starting_ratio(self.scene.geometry, self._flanks, 1.0, arms)
 
     @property
     def _flanks(self) -> float:
@@ -71,7 +70,9 @@ class Starting:
     def joint_torques(self) -> tuple[float, float]:
         """What the joints of pinion and gear take without a force of the teeth [N m]."""
         shafts = [0.0, 0.0]
+        age = self.scene.initial.rest_time
         for joint, load in joint_loads(self.scene, 0.0):
+            joint = joint.of_age(age)
             kind = "pin" if joint.name == "pin" else "hubs"
             taken = joint.arm * (load + joint.adhesion) if kind in self.elements else 0.0
             taken += joint.axial_torque if "axial" in self.elements else 0.0

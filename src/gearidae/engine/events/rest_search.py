@@ -1,7 +1,8 @@
 """The first time at which gears at rest begin to move: a search in time alone.
 
 While nothing moves the state is constant, so that what is left of what holds the gears, the margin, depends on time
-through the torques only. Nothing is integrated. The time goes on by stretches in which all schedules are straight:
+through the torques only, and through friction of joints that ages: that holds the more the longer they rest, so that
+it makes no fall. Nothing is integrated. The time goes on by stretches in which all schedules are straight:
 
 - *Bounds.* The torques lie within the sums of their parts' bounds. What holds at both ends of the drive's range under
   the least load holds at all torques between: a larger load holds more, and the drives that friction can hold

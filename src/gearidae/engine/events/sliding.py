@@ -15,6 +15,7 @@ from typing import Final
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import FRICTION
 from gearidae.engine.events.record import note_directions, record_changes
+from gearidae.engine.friction.ageing import begin_ageing
 from gearidae.engine.friction.forces import NO_FORCE, Shafts, has_gear_element, solve_shafts
 from gearidae.engine.friction.hubs import has_hubs
 from gearidae.engine.friction.pairs import RUBS, lever_rate, levers
@@ -114,6 +115,8 @@ def begin_sliding(m: Model, t: float, y: Floats) -> None:
 @compiled_once(FRICTION)
 def settle_start(m: Model, t: float, y: Floats, fresh: bool) -> None:
     """Deal with all guards of friction that have fallen at a start, of which no events are recorded."""
+    if m.scene.friction.ages != 0:
+        begin_ageing(m, t, y)
     for _ in range(PASSES_HIGH):
         if not settle_sliding(m, t, y, fresh):
             return

@@ -53,14 +53,14 @@ class _Limits(NamedTuple):
 def equilibrium_margin(m: Model, pinion: float, gear: float) -> float:
     """Largest reserve of force of all vertices; below zero if and only if nothing balances."""
     work = m.work.friction
-    pinion_dry = gear_dry = 0.0
+    pinion_hub = gear_hub = pinion_dry = gear_dry = 0.0
     for i in range(work.pairs, work.count):
         if work.element[i].hold == HELD_GEAR:
-            gear_dry = work.element[i].limit
+            gear_hub, gear_dry = work.element[i].hub, work.element[i].limit
         else:
-            pinion_dry = work.element[i].limit
+            pinion_hub, pinion_dry = work.element[i].hub, work.element[i].limit
     pin = (work.pin[0], work.pin[1])
-    limits = _Limits(m.scene.friction.pinion_hub, m.scene.friction.gear_hub, pinion_dry, gear_dry, pin)
+    limits = _Limits(pinion_hub, gear_hub, pinion_dry, gear_dry, pin)
     free = _Left(pinion, gear, work.load[0], work.load[1])
     if work.pairs == 0:
         return _at_vertex(free, limits)

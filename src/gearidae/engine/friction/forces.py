@@ -13,6 +13,7 @@ from typing import Final, NamedTuple
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import FRICTION
+from gearidae.engine.friction.ageing import JointFriction, joint_friction
 from gearidae.engine.friction.hubs import (
     Loads,
     Mesh,
@@ -56,16 +57,15 @@ def dry_force(m: Model, t: float, y: Floats) -> float:
 
 
 @compiled(inline=True)
-def gear_limit(m: Model, t: float, y: Floats) -> float:
+def gear_limit(m: Model, t: float, y: Floats, joints: JointFriction) -> float:
     """Limit of what resists the gear, over its base radius, without what grows with the load of its hub."""
-    return dry_force(m, t, y) + m.scene.friction.gear_constant
+    return dry_force(m, t, y) + joints.gear_constant
 
 
 @compiled(inline=True)
-def pinion_limit(m: Model, pin: tuple[float, float]) -> float:
+def pinion_limit(joints: JointFriction, pin: tuple[float, float]) -> float:
     """Limit of what resists the pinion under the force of a pin, without what grows with the load of its hub."""
-    friction = m.scene.friction
-    return friction.pinion_constant + friction.pin * math.hypot(pin[0], pin[1])
+    return joints.pinion_constant + joints.pin * math.hypot(pin[0], pin[1])
 
 
 class Shafts(NamedTuple):
@@ -184,10 +184,11 @@ def solve_shafts(m: Model, t: float, y: Floats, turn: float, pinion: float, gear
             corner = state.load_sign * along + RUBS
     if state.hold == AT_REST:
         return Shafts(0.0, 0.0, 0.0, 0.0, mesh, loads, pin, corner)
-    a1, a2, dry = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass, gear_limit(m, t, y)
-    on_pinion = pairs.pinion - state.pinion_slip * pinion_limit(m, pin)
+    joints = joint_friction(m, t, y)
+    a1, a2, dry = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass, gear_limit(m, t, y, joints)
+    on_pinion = pairs.pinion - state.pinion_slip * pinion_limit(joints, pin)
     on_gear = pairs.gear - _gear_slip(m) * dry
-    hub_on_pinion, hub_on_gear = state.pinion_slip * friction.pinion_hub, _gear_slip(m) * friction.gear_hub
+    hub_on_pinion, hub_on_gear = state.pinion_slip * joints.pinion_hub, _gear_slip(m) * joints.gear_hub
     held, margin = 0.0, math.inf
     if state.hold == HELD_PAIR:
         first, second = a1 * pairs.first, a2 * pairs.second
@@ -202,10 +203,10 @@ def solve_shafts(m: Model, t: float, y: Floats, turn: float, pinion: float, gear
     on_pinion -= hub_on_pinion * loads.pinion
     on_gear -= hub_on_gear * loads.gear
     if state.hold == HELD_GEAR:
-        margin = dry + friction.gear_hub * loads.gear - abs(pairs.gear)
+        margin = dry + joints.gear_hub * loads.gear - abs(pairs.gear)
         return Shafts(a1 * on_pinion, 0.0, pairs.gear, margin, mesh, loads, pin, corner)
     if state.hold == HELD_PINION:
-        margin = pinion_limit(m, pin) + friction.pinion_hub * loads.pinion - abs(pairs.pinion)
+        margin = pinion_limit(joints, pin) + joints.pinion_hub * loads.pinion - abs(pairs.pinion)
         return Shafts(0.0, a2 * on_gear, pairs.pinion, margin, mesh, loads, pin, corner)
     return Shafts(a1 * on_pinion, a2 * on_gear, held, margin, mesh, loads, pin, corner)
 

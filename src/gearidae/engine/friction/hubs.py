@@ -42,7 +42,7 @@ class Loads(NamedTuple):
 @compiled(inline=True)
 def has_hubs(m: Model) -> bool:
     """Whether any hub has friction that grows with its load."""
-    return bool(m.scene.friction.pinion_hub > 0.0 or m.scene.friction.gear_hub > 0.0)
+    return bool(m.scene.friction.hubs != 0)
 
 
 @compiled(inline=True)

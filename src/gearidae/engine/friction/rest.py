@@ -14,6 +14,7 @@ import math
 from typing import NamedTuple
 
 from gearidae.compiled import compiled
+from gearidae.engine.friction.ageing import joint_friction
 from gearidae.engine.friction.equilibrium import equilibrium_margin
 from gearidae.engine.friction.forces import gear_limit, has_gear_element, pinion_limit
 from gearidae.engine.friction.hubs import (
@@ -51,15 +52,15 @@ def list_elements(m: Model, t: float, y: Floats) -> None:
             count += 1
     work.pairs = count
     work.load[0], work.load[1] = vector_sum(m, Mesh(drive, coast, 0.0, 0.0))
-    pin = pin_force(m, t, y, 0.0)
+    pin, joints = pin_force(m, t, y, 0.0), joint_friction(m, t, y)
     work.pin[0], work.pin[1] = pin
     if has_gear_element(m):
-        _set(work.element[count], 0.0, 1.0, gear_limit(m, t, y), HELD_GEAR)
-        work.element[count].hub = friction.gear_hub
+        _set(work.element[count], 0.0, 1.0, gear_limit(m, t, y, joints), HELD_GEAR)
+        work.element[count].hub = joints.gear_hub
         count += 1
     if friction.pinion_rubs != 0:
-        _set(work.element[count], 1.0, 0.0, pinion_limit(m, pin), HELD_PINION)
-        work.element[count].hub = friction.pinion_hub
+        _set(work.element[count], 1.0, 0.0, pinion_limit(joints, pin), HELD_PINION)
+        work.element[count].hub = joints.pinion_hub
         count += 1
     work.count = count
 

@@ -14,6 +14,7 @@ from gearidae.engine.events.pair_events import find_event, take_event
 from gearidae.engine.events.record import EVENTS_AT_ONCE
 from gearidae.engine.events.sliding import follow_creeping, follow_sliding
 from gearidae.engine.events.stops import keeps_checkpoint, next_stop, pass_knot, stop_guard
+from gearidae.engine.friction.ageing import begin_ageing, follow_ageing
 from gearidae.engine.integrate.driver import (
     BOUND_EXCEEDED,
     CHATTER,
@@ -70,6 +71,8 @@ def finish_step(
     driver, t, events = m.work.driver, m.work.driver.time, out.events
     accept(m, t, y)
     observers.step(m, t, y, yp, (flag != 0, flag == ROOT), between)
+    if m.scene.friction.ages != 0:
+        follow_ageing(m, t, y)
     if m.state.bound_exceeded != 0:
         driver.error = BOUND_EXCEEDED
     if in_flight(m):
@@ -154,6 +157,8 @@ def prepare_start(m: Model, t: float, y: Floats, yp: Floats) -> None:
     set_law_window(m)
     if m.scene.law_switches != 0:
         set_law_sides(m, t, y)
+    if m.scene.friction.ages != 0:
+        begin_ageing(m, t, y)
     begin_rest(m, t, y)
     set_rates(m, t, y, yp)
     observers.begin(m, t, y, yp)

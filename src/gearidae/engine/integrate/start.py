@@ -85,6 +85,8 @@ def rebase(m: Model, y: Floats) -> None:
     m.state.turns += shift
     m.state.mesh_mark_below -= shift
     m.state.mesh_mark_above -= shift
+    for shaft in range(2):
+        m.state.ageing.way[shaft] -= shift / m.scene.phase_rate
     for k in range(m.scene.histories):
         if m.state.history[k].pair != EMPTY:
             m.state.history[k].pair -= int(shift)

@@ -225,6 +225,13 @@ _STANDING_FIELDS: Final = (
     Quantity("slip_position", "where the gear was then", PITCHES),
 )
 
+_AGEING_FIELDS: Final = (
+    Quantity("time", "when ages, ways and speeds have last been noted", TIME),
+    Quantity("age", "of the contacts of pinion's hub, gear's hub and pin", TIME, shape=(3,)),
+    Quantity("way", "of the base circles of pinion and gear then", LENGTH, shape=(2,)),
+    Quantity("speed", "of the base circles then", SPEED, shape=(2,)),
+)
+
 STATE_FIELDS: Final = (
     Quantity("time", "last accepted time", TIME),
     Quantity("turns", "whole pitches taken out of the phase", PITCHES, high=COUNT_HIGH),
@@ -274,6 +281,7 @@ STATE_FIELDS: Final = (
         "load_sign",
         "+1 where the vector sum of the mesh forces points forward, -1 behind its passage of zero",
     ),
+    Quantity("ageing", "of friction of the joints, where it ages", kind=_AGEING_FIELDS),
 )
 
 HISTORY: Final = record_type(*HISTORY_FIELDS)

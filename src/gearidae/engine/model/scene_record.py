@@ -80,6 +80,8 @@ FRICTION: Final = record_type(  # of flanks and joints: hubs and the pin of a dr
     ("rubs", INT),  # 1 if flanks or joints do, or the loads of joints are followed
     ("flanks", INT),  # 1 if flanks have
     ("joints", INT),  # 1 if a joint has a radius, so that loads are followed
+    ("hubs", INT),  # 1 if a hub has friction that grows with its load
+    ("ages", INT),  # 1 if friction of a joint grows with the time at rest
     ("pinion_rubs", INT),  # 1 if a joint of the pinion has friction
     ("gear_rubs", INT),  # 1 if a joint of the gear has
     ("forced", INT),  # 1 if the drive pushes with a pin
@@ -94,7 +96,7 @@ FRICTION: Final = record_type(  # of flanks and joints: hubs and the pin of a dr
     ("radii", REAL),  # sum of both radii of curvature [pb]
     ("pinion_bend", REAL),  # sigma over the pinion's base radius [1]
     ("gear_bend", REAL),  # sigma over the gear's base radius [1]
-    ("pinion_hub", REAL),  # coefficient times radius of the pinion's hub over its base radius [1]
+    ("pinion_hub", REAL),  # sliding coefficient times radius of the pinion's hub over its base radius [1]
     ("gear_hub", REAL),  # the same of the gear [1]
     ("pin", REAL),  # the same of the pin, over the pinion's base radius [1]
     ("pinion_constant", REAL),  # torque of adhesion and axial load of the pinion over its base radius [F]
@@ -102,6 +104,16 @@ FRICTION: Final = record_type(  # of flanks and joints: hubs and the pin of a dr
     ("pinion_arm", REAL),  # radius of the pinion's hub over its base radius [1]
     ("gear_arm", REAL),  # the same of the gear [1]
     ("pin_arm", REAL),  # radius of the pin joint over the pinion's base radius [1]
+    ("pinion_hold", REAL),  # `pinion_constant` over the coefficient [F]
+    ("gear_hold", REAL),  # the same of the gear [F]
+    ("coefficient", REAL, (3,)),  # sliding, of pinion's hub, gear's hub and pin [1]
+    ("rise", REAL, (3,)),  # of it with the time at rest [1]
+    ("ageing_rate", REAL, (3,)),  # one over the time of that; 0 without a rise [1/tau]
+    (
+        "forgetting",
+        REAL,
+        (3,),
+    ),  # one over the way of the base circle that ends it; 0 without a rise [1/sigma]
     (
         "pin_cosine",
         REAL,

@@ -10,6 +10,7 @@ import math
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.elastic.rows import first_unknown
+from gearidae.engine.friction.ageing import coefficients
 from gearidae.engine.model.record_types import FREE
 from gearidae.engine.model.state import COAST, DRIVE, GEARS, LOAD, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
@@ -70,7 +71,7 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
     if m.scene.friction.rubs != 0:
         friction, resistance, loads = friction_at_gear(m, t, y)
         contact += friction
-        width -= _write_loads(m, loads, row)
+        width -= _write_joints(m, loads, t, y, row)
     elif m.state.hold == FREE:
         resistance = resisting_force(m, t, y)
     else:
@@ -101,14 +102,19 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
 
 
 @compiled
-def _write_loads(m: Model, loads: tuple[float, float, float], row: Floats) -> int:
-    """Write the loads of the joints, which are a row's last columns; how many they are."""
+def _write_joints(m: Model, loads: tuple[float, float, float], t: float, y: Floats, row: Floats) -> int:
+    """Write loads and ageing coefficients of the joints, which are a row's last columns; how many they are."""
     if m.scene.friction.joints == 0:
         return 0
-    count = 2 + m.scene.friction.forced
+    count, ages = 2 + m.scene.friction.forced, m.scene.friction.ages
+    first = row.size - (1 + ages) * count
     for i in range(count):
-        row[row.size - count + i] = abs(loads[i]) * m.scene.force_unit
-    return count
+        row[first + i] = abs(loads[i]) * m.scene.force_unit
+    if ages != 0:
+        values = coefficients(m, t, y)
+        for i in range(count):
+            row[first + count + i] = values[i]
+    return (1 + ages) * count
 
 
 @compiled_once(SOLVER)

@@ -13,6 +13,7 @@ import numpy as np
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine import adams
 from gearidae.engine.compiling import FRICTION
+from gearidae.engine.friction.ageing import JointFriction, joint_friction, joint_friction_rate
 from gearidae.engine.friction.forces import Shafts, solve_shafts
 from gearidae.engine.friction.hubs import Loads, Mesh, has_hubs, pin_rate, vector_sum
 from gearidae.engine.friction.pairs import direction, lever_rate, levers, set_limits
@@ -82,38 +83,51 @@ def note_friction(m: Model, t: float, y: Floats) -> None:
             )
         else:
             load_rate = _load_rate(m, shafts, Mesh(drive, coast, drive_friction, coast_friction), force_rate)
-        _note_joints(m, shafts, load_rate, force_rate, turn, y[W])
+        joints, joints_rate = joint_friction(m, t, y), JointFriction(0.0, 0.0, 0.0, 0.0, 0.0)
+        if m.scene.friction.ages != 0:
+            joints_rate = joint_friction_rate(m, t, y)
+        _note_joints(m, shafts, (joints, joints_rate), load_rate, force_rate, turn, y[W])
 
 
 @compiled
 def _note_joints(
-    m: Model, shafts: Shafts, load_rate: Loads, force_rate: tuple[float, float], turn: float, w: float
+    m: Model,
+    shafts: Shafts,
+    friction_and_rate: tuple[JointFriction, JointFriction],
+    load_rate: Loads,
+    force_rate: tuple[float, float],
+    turn: float,
+    w: float,
 ) -> None:
-    """Note the powers of hubs and pin, for the rates of their loads and of the force of the pin."""
+    """Note the powers of hubs and pin, for the rates of their friction, their loads and the force of the pin."""
+    joints, rate = friction_and_rate
     friction, pin = m.scene.friction, math.hypot(shafts.pin[0], shafts.pin[1])
     pin_load_rate = 0.0
     if pin > 0.0:
         pin_load_rate = (shafts.pin[0] * force_rate[0] + shafts.pin[1] * force_rate[1]) / pin
     turns, gear_turns = math.copysign(1.0, turn), math.copysign(1.0, w)
     slip, gear_slip = m.state.pinion_slip, m.state.slip if friction.gear_rubs != 0 else 0.0
-    pinion, gear = friction.pinion_hub * shafts.loads.pinion, friction.gear_hub * shafts.loads.gear
+    pinion, gear = joints.pinion_hub * shafts.loads.pinion, joints.gear_hub * shafts.loads.gear
+    pinion_rate = rate.pinion_hub * shafts.loads.pinion + rate.pinion_constant
+    gear_rate = rate.gear_hub * shafts.loads.gear + rate.gear_constant
     _note(
         m,
         2,
-        slip * (pinion + friction.pinion_constant),
-        slip * friction.pinion_hub * load_rate.pinion,
+        slip * (pinion + joints.pinion_constant),
+        slip * (joints.pinion_hub * load_rate.pinion + pinion_rate),
         turn,
         shafts.pinion,
     )
     _note(
         m,
         3,
-        gear_slip * (gear + friction.gear_constant),
-        gear_slip * friction.gear_hub * load_rate.gear,
+        gear_slip * (gear + joints.gear_constant),
+        gear_slip * (joints.gear_hub * load_rate.gear + gear_rate),
         w,
         shafts.gear,
     )
-    _note(m, 4, slip * friction.pin * pin, slip * friction.pin * pin_load_rate, turn, shafts.pinion)
+    pin_friction_rate = joints.pin * pin_load_rate + rate.pin * pin
+    _note(m, 4, slip * joints.pin * pin, slip * pin_friction_rate, turn, shafts.pinion)
     arms = turns * friction.pinion_arm, gear_turns * friction.gear_arm, turns * friction.pin_arm
     _note(m, 5, arms[0] * shafts.loads.pinion, arms[0] * load_rate.pinion, turn, shafts.pinion)
     _note(m, 6, arms[1] * shafts.loads.gear, arms[1] * load_rate.gear, w, shafts.gear)

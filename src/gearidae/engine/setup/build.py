@@ -157,6 +157,7 @@ def _gear_problem(scene: GearScene, nodes: Nodes | None, begin: Start) -> Proble
     u = float(s.clearance[DRIVE]) + relief - start.gap / sigma
     w = start.gear_speed * geometry.base_radius_gear / speed
     model.state.turns, model.state.first_place = whole, start.mesh_phase
+    model.state.ageing.age[:] = start.rest_time / float(s.time_unit)
     model.state.initial_lead = u + static_error(model, u, phase)[1]
     skipped = {
         "static_error": int(not mesh.static_error),

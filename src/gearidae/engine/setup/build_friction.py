@@ -11,13 +11,14 @@ from gearidae.asperities.area import ContactArea
 from gearidae.asperities.tip import asperity_of
 from gearidae.contact.kernels.energy import loading_pieces
 from gearidae.contact.kernels.law import N_LOADING, Kernel, law_table
+from gearidae.engine.model.record_types import GEAR_HUB, PIN, PINION_HUB
 from gearidae.engine.model.state import MATERIALS, Record
 from gearidae.engine.setup.tables import Tables
 from gearidae.mesh.involute import Geometry
 from gearidae.records.standing import Holding
 from gearidae.scene import MATERIAL_NAMES, GearScene, Scene, Surface
 from gearidae.scene.friction import friction_values, has_flank_friction
-from gearidae.scene.joints import has_pin, joints
+from gearidae.scene.joints import Joint, has_pin, joints
 
 
 def add_friction(s: Record, scene: GearScene) -> None:
@@ -61,25 +62,46 @@ def _add_joints(s: Record, scene: GearScene, geometry: Geometry) -> None:
     pinion, gear, force = geometry.base_radius_pinion, geometry.base_radius_gear, float(s.force_unit)
     for joint in joints(scene):
         constant = joint.torque(0.0) / force
+        _add_ageing(s, joint, gear if joint.name == "gear hub" else pinion)
         if joint.name == "pin":
             friction.pin, friction.pin_arm = joint.arm / pinion, joint.radius / pinion
         elif joint.name == "gear hub":
             friction.gear_hub, friction.gear_arm = joint.arm / gear, joint.radius / gear
             friction.gear_constant = constant / gear
+            friction.gear_hold = joint.holding_torque / force / gear
         else:
             friction.pinion_hub, friction.pinion_arm = joint.arm / pinion, joint.radius / pinion
             friction.pinion_constant = constant / pinion
+            friction.pinion_hold = joint.holding_torque / force / pinion
         friction.holding |= int(joint.holding)
-    friction.pinion_rubs = int(
-        friction.pinion_hub > 0.0 or friction.pinion_constant > 0.0 or friction.pin > 0.0
-    )
-    friction.gear_rubs = int(friction.gear_hub > 0.0 or friction.gear_constant > 0.0)
+        rubs = int(joint.largest > 0.0)
+        if joint.name != "pin":
+            friction.hubs |= int(rubs != 0 and joint.radius > 0.0)
+        if joint.name == "gear hub":
+            friction.gear_rubs |= rubs
+        else:
+            friction.pinion_rubs |= rubs
     if friction.joints != 0 and has_pin(scene):
         angle = geometry.pressure_angle + scene.drive.orientation
         friction.forced, friction.pin_cosine, friction.pin_sine = (
             1,
             math.cos(angle) / force,
             math.sin(angle) / force,
+        )
+
+
+_JOINTS = {"pinion hub": PINION_HUB, "gear hub": GEAR_HUB, "pin": PIN}
+
+
+def _add_ageing(s: Record, joint: Joint, base_radius: float) -> None:
+    """Set what the coefficient of a joint depends on; ways are those of the base circle."""
+    friction, place = s.friction, _JOINTS[joint.name]
+    friction.coefficient[place], friction.rise[place] = joint.coefficient, joint.rise
+    if joint.rise > 0.0:
+        friction.ages = 1
+        friction.ageing_rate[place] = float(s.time_unit) / joint.ageing_time
+        friction.forgetting[place] = (
+            float(s.length_unit) * joint.sliding_radius / base_radius / joint.memory_length
         )
 
 

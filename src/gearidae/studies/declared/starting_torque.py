@@ -20,6 +20,7 @@ from gearidae.studies.study import Call, Column, Option, Picture, Rows, Study
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from gearidae.arrays import Floats
     from gearidae.scene import Scene
 
 SEEDS: Final = 20
@@ -27,7 +28,9 @@ SEEDS: Final = 20
 SLOW_ENOUGH: Final = 0.1
 """Change of the median by half the rate below which a rate is slow enough."""
 _FRACTION: Final = "coating.sam_fraction"
+_REST: Final = "initial.rest_time"
 _ALONG: Final = ("sam_fraction",)
+_AFTER: Final = ("rest_time",)
 
 
 def _call(
@@ -44,8 +47,12 @@ def _call(
     seeds: Annotated[
         int | None, Option("Gears of a population, with seeds from contact.seed on. Default: 20.")
     ] = None,
+    rest: Annotated[
+        str | None, Option("Times at rest before the start, 1 ms,1 s: of hubs and a pin that age.")
+    ] = None,
 ) -> Call:
     fractions: Any = "own"
+    times = None if rest is None else sweep_values([f"{_REST}={rest}"])[_REST]
     if over is not None:
         ((key, fractions),) = sweep_values([over]).items()
         if key != _FRACTION:
@@ -53,13 +60,15 @@ def _call(
 
     def announcement(scene: Scene, _: int | None) -> str:
         coatings = "own coating" if fractions == "own" else f"{len(fractions)} fractions of the coating"
+        coatings += "" if times is None else f", {len(times)} times at rest"
         if not scene.contact.is_discrete:
             return f"{coatings}; one torque is tried after the other"
         return (
             f"{seeds or SEEDS} gears, {coatings}; each is run several times, with a torque that rises slowly"
         )
 
-    options = {"impacts": impacts, "lowest": lowest, "tolerance": tolerance, "seeds": seeds}
+    options: dict[str, Any] = {"impacts": impacts, "lowest": lowest, "tolerance": tolerance, "seeds": seeds}
+    options["rest_time"] = times
     return Call((fractions,), options, announcement)
 
 
@@ -79,6 +88,21 @@ def _sentence(ds: xr.Dataset) -> str:
     return f"{starts}: the drive's own {with_prefix(drive, 'N m', 4)} {verdict}."
 
 
+def _rests_sentence(ds: xr.Dataset) -> str:
+    """Say what the shortest and the longest rest need."""
+    ordered = ds.isel(rest_time=np.argsort(ds["rest_time"].values))
+    torques, times = _simulated(ordered).values, ordered["rest_time"].values
+    needs = [
+        f"{with_prefix(float(torques[i]), 'N m', 4)} after {_time(float(times[i]))} at rest"
+        for i in ((0, -1) if times.size > 1 else (0,))
+    ]
+    return f"The gear starts at {' and at '.join(needs)}, torque on the pinion."
+
+
+def _time(seconds: float) -> str:
+    return with_prefix(seconds, "s", 4) if seconds > 0.0 else "no time"
+
+
 def _simulated(ds: xr.Dataset) -> xr.DataArray:
     """Simulated torques; static ones if none have been simulated."""
     simulated = ds["simulated_torque"]
@@ -88,18 +112,21 @@ def _simulated(ds: xr.Dataset) -> xr.DataArray:
 def _rows(ds: xr.Dataset) -> Rows:
     """Torques at each coverage."""
     yield "Starting torque on the pinion", "simulated", "sticks at, and without inertia"
-    for number in range(ds.sizes["sam_fraction"]):
-        point = ds.isel(sam_fraction=number)
+    along = "sam_fraction" if "sam_fraction" in ds.dims else "rest_time"
+    for number in range(ds.sizes[along]):
+        point = ds.isel({along: number})
+        value = float(point[along])
+        name = f"SAM {100.0 * value:.4g} %" if along == "sam_fraction" else f"after {_time(value)} at rest"
         turns, sticks, static = (
-            with_prefix(float(point[name]), "N m", 4)
-            for name in ("simulated_torque", "simulated_stuck", "static_torque")
+            with_prefix(float(point[which]), "N m", 4)
+            for which in ("simulated_torque", "simulated_stuck", "static_torque")
         )
         words = f"sticks at {sticks}, static {static}"
         if np.isnan(point["simulated_torque"]):
             turns, words = "-", f"no simulated torque, static {static}"
             message = str(point["message"].values) if "message" in point else ""
             words += f": {message}" if message else ""
-        yield f"SAM {100.0 * float(point['sam_fraction']):.4g} %", turns, words
+        yield name, turns, words
         if "parts" in point:
             yield from _parts(point["parts"], "of the static torque")
 
@@ -190,7 +217,7 @@ def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     Parameters
     ----------
     ds : xarray.Dataset
-        From `gearidae.analysis.starting_torque`.
+        From `gearidae.studies.starting_torque`.
     ax : matplotlib Axes, optional
         Where to draw; by default in a figure of its own.
 
@@ -204,13 +231,62 @@ def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     SceneError
         If the dataset is none of starting torques, or adhesion holds the gear nowhere.
     """
-    from matplotlib.ticker import EngFormatter, StrMethodFormatter
+    from matplotlib.ticker import StrMethodFormatter
+
+    STUDY.require(ds)
+    percent = 100.0 * ds["sam_fraction"].values
+    ax = _torques_over(ds, percent, ax)
+    ax.set_yscale("log")
+    ax.set_xlabel("SAM (%)")
+    ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    if len(percent) > 1:
+        ax.set_xlim(percent.min(), percent.max())
+    else:
+        ax.set_xticks(percent)
+    return ax
+
+
+def picture_of_rests(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
+    """Draw the starting torque over the time at rest.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        From `gearidae.studies.starting_torque` with times at rest.
+    ax : matplotlib Axes, optional
+        Where to draw; by default in a figure of its own.
+
+    Returns
+    -------
+    Axes
+        With times on a logarithmic scale; a start without rest is drawn at a tenth of the shortest time.
+
+    Raises
+    ------
+    SceneError
+        If the dataset is something else, or nothing holds the gear.
+    """
+    from matplotlib.ticker import EngFormatter
+
+    RESTS.require(ds)
+    ds = ds.sortby("rest_time")
+    times = ds["rest_time"].values
+    shortest = float(times[times > 0.0].min()) if (times > 0.0).any() else 1.0
+    ax = _torques_over(ds, np.where(times > 0.0, times, 0.1 * shortest), ax)
+    ax.set_xscale("log")
+    ax.set_ylim(bottom=0.0)
+    ax.set_xlabel("time at rest")
+    ax.xaxis.set_major_formatter(EngFormatter("s"))
+    return ax
+
+
+def _torques_over(ds: xr.Dataset, places: Floats, ax: Axes | None) -> Axes:
+    """Draw both torques over some places, and the drive's own."""
+    from matplotlib.ticker import EngFormatter
 
     from gearidae.drawing.style import COLOURS, LINE_STYLES, new_axes, tidy
 
-    STUDY.require(ds)
     ax = new_axes(ax, height=3.8)
-    percent = 100.0 * ds["sam_fraction"].values
     drawn = False
     for number, (name, label) in enumerate(
         (("static_torque", "static: without inertia"), ("simulated_torque", "simulated: from rest"))
@@ -220,7 +296,7 @@ def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
         if held.any():
             drawn = True
             ax.plot(
-                percent[held],
+                places[held],
                 torque[held],
                 color=COLOURS[number],
                 linestyle=LINE_STYLES[number],
@@ -232,16 +308,9 @@ def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
         raise SceneError(
             "plot", "starting_torque", "adhesion does not hold the gear at any of these fractions"
         )
-    ax.set_yscale("log")
-    ax.set_xlabel("SAM (%)")
     ax.set_ylabel("starting torque on the pinion")
-    ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
     ax.yaxis.set_major_formatter(EngFormatter("N m"))
     tidy(ax)
-    if len(percent) > 1:
-        ax.set_xlim(percent.min(), percent.max())
-    else:
-        ax.set_xticks(percent)
     if ds.attrs.get("drive_torque", 0.0) > 0.0:
         ax.axhline(
             ds.attrs["drive_torque"], color="0.3", linewidth=0.8, linestyle=":", label="the drive's own"
@@ -317,6 +386,7 @@ STUDY = Study(
     examples=(
         "gearidae starting-torque mine.toml",
         "gearidae starting-torque mine.toml --over coating.sam_fraction=1:0.4:-0.1 --impacts 1",
+        'gearidae starting-torque mine.toml --rest "1 ms,1 s"',
     ),
     columns={
         "static_torque": Column(_ALONG, "N m", "starting torque without inertia"),
@@ -334,6 +404,33 @@ STUDY = Study(
     rows=_rows,
     pictures=(
         Picture("starting_torque", "Smallest torque at which a gear at rest begins to turn", draw=picture),
+    ),
+)
+RESTS = Study(
+    kind="starting_rests",
+    words="study of starting torques over the time at rest",
+    maker="starting-torque --rest",
+    columns={
+        "rest_time": Column(_AFTER, "s", "time at rest before the start"),
+        "static_torque": Column(_AFTER, "N m", "starting torque without inertia"),
+        "simulated_torque": Column(
+            _AFTER, "N m", "smallest simulated torque at which the gear turns from rest"
+        ),
+        "simulated_stuck": Column(_AFTER, "N m", "largest simulated torque at which the gear sticks"),
+        "parts": Column(
+            (*_AFTER, "part"), "N m", "what each part takes of the static torque", required=False
+        ),
+        "part": Column(("part",), "", "what takes a starting torque", required=False),
+        "message": Column(_AFTER, "", "how the run of a torque has failed", required=False),
+    },
+    sentence=_rests_sentence,
+    rows=_rows,
+    pictures=(
+        Picture(
+            "starting_rests",
+            "Smallest torque at which a gear that has stood begins to turn",
+            draw=picture_of_rests,
+        ),
     ),
 )
 GEARS = Study(
