@@ -196,7 +196,7 @@ def test_the_rate_is_that_of_the_last_half_minute(kernel, monkeypatch):
     """A run that begins to adhere slows down, and the rate says so."""
     clock = iter([0.0, *(float(second) for second in range(200))])
     monkeypatch.setattr(progress, "monotonic", lambda: next(clock))
-    pace = progress._Pace(1.0)
+    pace = progress._Pace(1.0, "the run takes", 600.0, 30.0)
     times = [1e-3 * second for second in range(100)]
     times += [times[-1] + 1e-5 * second for second in range(1, 60)]
     rates = [pace.rate(time) for time in times]
@@ -213,3 +213,34 @@ def test_a_notebook_shows_what_the_gear_does_and_the_time_left(kernel, monkeypat
         report(0.2, 40)
     assert "simulating: held by adhesion since 150 ms; 200 of 300 ms, 40 events" in kernel[-1]["text/plain"]
     assert re.search(r"about [.\d]+ min left", kernel[-1]["text/plain"])
+
+
+def test_a_sweep_says_how_long_it_will_take_by_the_rate_of_all_its_cores(kernel, monkeypatch):
+    """Expected until something is measured; then 2 of 20 runs in 60 s leave 9 min."""
+    now = [0.0]
+    monkeypatch.setattr(progress, "monotonic", lambda: now[0])
+    with progress.sweep_progress(True, 20, lambda: "some 3 min with 2 at a time") as report:
+        assert "20 runs, some 3 min with 2 at a time" in kernel[-1]["text/plain"]
+        report(0.0, 20)
+        assert "0 of 20 runs, some 3 min with 2 at a time" in kernel[-1]["text/plain"]
+        now[0] = 60.0
+        report(2.0, 20)
+    assert "2 of 20 runs, about 9 min left" in kernel[-1]["text/plain"]
+
+
+@pytest.mark.parametrize(
+    ("wanted", "every", "said"),
+    [
+        (True, 20.0, ["at this rate the 20 runs take another 6.3 min"]),
+        (True, 2.0, []),  # 38 s
+        (False, 20.0, []),
+    ],
+)
+def test_a_long_sweep_is_announced_once_where_no_bar_is_seen(wanted, every, said, monkeypatch, caplog):
+    clock = iter([every * number for number in range(4)])
+    monkeypatch.setattr(progress, "monotonic", lambda: next(clock))
+    monkeypatch.setattr(sys, "stderr", io.StringIO())
+    with progress.sweep_progress(wanted, 20, pytest.fail) as report:
+        for done in range(4):
+            report(float(done), 20)
+    assert [record.getMessage() for record in caplog.records] == said

@@ -24,6 +24,10 @@ _LONG: Final = 600.0
 """Wall time above which a run is announced as long [s]."""
 _RECENT: Final = 30.0
 """Wall time over which the rate of a run is taken [s]."""
+_UNSEEN: Final = 60.0
+"""Wall time above which runs are announced where no bar is seen [s]."""
+_MANY_RECENT: Final = 600.0
+"""Wall time over which the rate of a sweep is taken [s]: its runs differ from each other."""
 _REDRAWN: Final = 0.1
 """Least time between two states of a bar in a notebook [s]."""
 SweepProgress = Callable[[float, int], None]
@@ -82,7 +86,7 @@ class RunReport:
 
     def __init__(self, duration: float, call: RunProgress | None, advance: Advance | None) -> None:
         self._duration, self._call, self._advance = duration, call, advance
-        self._pace = _Pace(duration)
+        self._pace = _Pace(duration, "the run takes", _LONG, _RECENT)
         self.doing = ""
 
     def __call__(self, time: float, events: int) -> None:
@@ -102,34 +106,41 @@ class RunReport:
 
 
 class _Pace:
-    """Rate of a run in its last half minute, from its first report on.
+    """Rate of a run or of a sweep of late, from its first report on.
 
-    Compiling is over then, and a resumed run is back. Runs change their pace where they begin to adhere.
+    Compiling is over then, and what was resumed is back. Runs change their pace where they begin to adhere. All cores
+    that compute a sweep count, as the rate is one of all its runs.
 
     Parameters
     ----------
     end : float
-        Simulated time at which the run ends [s].
+        What is reported at the end: simulated time [s], number of runs.
+    what : str
+        What is announced, with its verb.
+    long : float
+        Wall time above which it is announced [s].
+    recent : float
+        Wall time over which the rate is taken [s].
     """
 
-    def __init__(self, end: float) -> None:
-        self._end = end
+    def __init__(self, end: float, what: str, long: float, recent: float) -> None:
+        self._end, self._what, self._long, self._recent = end, what, long, recent
         self._reports: deque[tuple[float, float]] = deque()
         self._judged = False
 
     def rate(self, time: float) -> float:
-        """Return the simulated time for each second of wall time, once the run has reached a time [s]."""
+        """Return what is done in each second of wall time, once so much is done."""
         now = monotonic()
         self._reports.append((now, time))
-        while now - self._reports[0][0] > _RECENT and len(self._reports) > 2:
+        while now - self._reports[0][0] > self._recent and len(self._reports) > 2:
             self._reports.popleft()
         began, start = self._reports[0]
         elapsed = now - began
         rate = (time - start) / elapsed if elapsed > 0.0 else 0.0
         if not self._judged and elapsed >= 1.0 and rate > 0.0:
             self._judged = True
-            if (remaining := (self._end - time) / rate) > _LONG:
-                log.warning("at this rate the run takes another %s", in_words(remaining))
+            if (remaining := (self._end - time) / rate) > self._long:
+                log.warning("at this rate %s another %s", self._what, in_words(remaining))
         return rate
 
 
@@ -143,8 +154,12 @@ def in_words(seconds: float) -> str:
 
 
 @contextmanager
-def sweep_progress(wanted: bool | SweepProgress, runs: int) -> Iterator[SweepProgress]:
-    """Show how far a sweep is.
+def sweep_progress(
+    wanted: bool | SweepProgress, runs: int, expected: Callable[[], str] = str
+) -> Iterator[SweepProgress]:
+    """Show how far a sweep is, and how long it will go on at the rate of all its cores.
+
+    Where a bar is wanted and none can be seen, the log says once how long it will take, if that is more than a minute.
 
     Parameters
     ----------
@@ -152,6 +167,8 @@ def sweep_progress(wanted: bool | SweepProgress, runs: int) -> Iterator[SweepPro
         As for `run_progress`.
     runs : int
         Number of runs.
+    expected : callable, optional
+        How long they will take, in words, asked for only if a bar is seen: shown until their rate is known.
 
     Yields
     ------
@@ -163,10 +180,22 @@ def sweep_progress(wanted: bool | SweepProgress, runs: int) -> Iterator[SweepPro
         return
     _check(wanted)
     with _bar("sweeping", float(runs)) if wanted else nullcontext() as advance:
+        long = _UNSEEN if wanted and advance is None else math.inf
+        pace = _Pace(float(runs), f"the {runs} runs take", long, _MANY_RECENT)
+        busy = threading.Lock()
+        hint = ""
+        if advance is not None and (hint := expected()):
+            advance(0.0, f"{runs} runs, {hint}", math.nan)
 
         def update(done: float, total: int) -> None:
+            with busy:  # runs report from several threads
+                rate = pace.rate(done)
             if advance is not None:
-                advance(done, f"{done:.4g} of {runs} runs", math.nan)
+                words = f"{done:.4g} of {runs} runs"
+                if rate > 0.0:
+                    advance(done, words, max(runs - done, 0.0) / rate)
+                else:
+                    advance(done, f"{words}, {hint}" if hint else words, math.nan)
 
         yield update
 

@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import gearidae as gd
 from gearidae.mesh.pair_contact import pair_contact
+from gearidae.progress import in_words
 from gearidae.runs.estimates import mean_drive_torque
-from gearidae.runs.run_time import run_time
+from gearidae.runs.run_time import run_time, time_in_words
 
 CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
 LOW = gd.preset("teodorescu2009_low_speed")
@@ -103,3 +105,41 @@ def test_a_rollers_energy_is_spent_at_its_closest_gap(fraction):
     closest = pair_contact(scene).closest_gap(roller.height, 0.5 * roller.mass * roller.speed**2)
     # the trapezoidal rule on steps of 0.05 roughnesses
     assert closest == pytest.approx(float(gd.simulate(scene).height.min()), abs=0.01 * 6e-9)
+
+
+def drawn(number):
+    """One scene of a mixed lot: half are driven, a quarter comes to rest, a quarter is on real asperities."""
+    rng = np.random.default_rng([76, number])
+    kind = ("driven", "driven", "rests", "discrete")[number % 4]
+    roughness = rng.uniform(4e-9, 9e-9)
+    changes = {
+        "coating.sam_fraction": rng.uniform(*((0.2, 0.6) if kind == "rests" else (0.3, 1.0))),
+        "surface.roughness": roughness,
+        "initial.gap": 6.0 * roughness,
+        "drive.torque": 0.0 if kind == "rests" else 4.5e-18 * 10.0 ** rng.uniform(-0.5, 0.7),
+        "run.rtol": 10.0 ** rng.uniform(-7.0, -4.0),
+        "run.duration": 0.05,
+        "run.samples": "off",
+    }
+    if kind == "discrete":
+        changes |= {
+            "contact.roughness": "discrete",
+            "contact.seed": int(rng.integers(100)),
+            "mesh.radius_force": True,
+            "run.duration": 1.5e-3,
+        }
+    return LOW.replace(changes)
+
+
+def test_steps_of_seventeen_in_twenty_drawn_scenes_within_a_factor_of_three():
+    """Gears that nothing drives ring where adhesion holds them; measured: 0.5 to 2.8, all twenty."""
+    ratios = [run_time(scene).steps / int(gd.simulate(scene).steps) for scene in map(drawn, range(20))]
+    assert sum(1.0 / 3.0 < ratio < 3.0 for ratio in ratios) >= 17, ratios
+
+
+def test_times_of_many_runs_count_the_cores():
+    scenes = [LOW.replace({"run.duration": 300.0 * factor}) for factor in (1, 2, 3)]
+    alone = sum(run_time(scene).seconds for scene in scenes)
+    assert time_in_words(scenes, 3, None) == f"some {in_words(alone)}, within a factor of about three"
+    assert time_in_words(scenes, 30, 4).startswith(f"some {in_words(10.0 * alone / 4.0)} with 4 at a time")
+    assert time_in_words([LOW], 1, 8) == "less than a second"

@@ -18,7 +18,9 @@ import xarray as xr
 import gearidae as gd
 from gearidae import engine
 from gearidae.errors import SolverError
+from gearidae.progress import sweep_progress
 from gearidae.records import GEAR_COLUMNS
+from gearidae.runs import sweeping
 from sweeps import without_times
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 2e-3, "run.samples": 201})
@@ -257,3 +259,21 @@ def test_an_archive_that_exists_is_refused_before_anything_runs(tmp_path):
     with pytest.raises(gd.SceneError, match="exists already"):
         gd.sweep(LOW, {KEY: FRACTIONS}, archive=tmp_path / "sweep.nc")
     assert (tmp_path / "sweep.nc").read_bytes() == b"precious"
+
+
+def test_studies_show_their_progress_unless_they_are_told_not_to(monkeypatch):
+    """As the commands do: with an estimate, and no words of a number of cores that somebody else's executor decides."""
+    shown = []
+
+    def watched(wanted, runs, expected):
+        shown.append((wanted, runs, expected()))
+        return sweep_progress(False, runs)
+
+    monkeypatch.setattr(sweeping, "sweep_progress", watched)
+    long = LOW.replace({"run.duration": 1e-4, "run.samples": "off", "initial.gap": "30 nm"})
+    vary = {"drive.torque": "uniform(4e-18, 5e-18)"}
+    gd.studies.ensemble(long, vary, 2, jobs=1)
+    gd.sweep(long, {KEY: [1.0]}, progress=False)
+    with ThreadPoolExecutor(1) as executor:
+        gd.sweep(long, {KEY: [1.0, 0.9]}, executor)
+    assert shown == [(True, 2, "less than a second"), (False, 1, "less than a second"), (True, 2, "")]

@@ -69,7 +69,7 @@ class Execution:
     executor: Executor | None = None
     jobs: int | None = None
     backend: str = "auto"
-    progress: bool | SweepProgress = False
+    progress: bool | SweepProgress = True
     archive: str | os.PathLike[str] | None = None
     overwrite: bool = False
     resume: bool = False
@@ -91,6 +91,14 @@ class Execution:
     def threads(self) -> int:
         """Return how many threads of this process compute at most; 0 if processes do, or somebody else's executor."""
         return check_jobs(self.jobs) if self.executor is None and self.driver == "native" else 0
+
+    def words(self, scenes: Sequence[Scene]) -> str:
+        """Say how long runs will take on the cores that compute them; nothing where somebody else's executor does."""
+        if self.executor is not None or not scenes:
+            return ""
+        from gearidae.runs.run_time import time_in_words  # what reads results does without estimates
+
+        return time_in_words(scenes, len(scenes), self.threads() or self.jobs)
 
     @contextmanager
     def computing(self, calls: int) -> Iterator[Executor | None]:

@@ -2,7 +2,8 @@
 
 A solver that keeps to its tolerance takes a number of steps for each oscillation of the contact, so that the fastest
 oscillation decides. Its frequency follows from the contact's stiffness: where the teeth rest under the mean torque, and
-where they are at the start. Of real asperities, few of which touch at a time, the stiffness of a single one decides.
+where they are at the start; without
+a drive where adhesion, or the load that slows the gear down, holds them. Of real asperities, few of which touch at a time, the stiffness of a single one decides.
 Measured on the shipped cases and on presets with 0 to 100 % of the monolayer the estimate is within a factor of three;
 a run that sticks, flies freely, or whose teeth stop vibrating, takes fewer steps than it says.
 """
@@ -10,12 +11,16 @@ a run that sticks, flies freely, or whose teeth stop vibrating, takes fewer step
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from gearidae.asperities.tip import asperity_of
+from gearidae.laws.law import LOAD
+from gearidae.laws.shafts import slowing
 from gearidae.mesh.pair_contact import PairContact, asperity_stiffness
-from gearidae.runs.estimates import balanced_speed, mean_drive_torque, rest_of
+from gearidae.progress import in_words
+from gearidae.runs.estimates import Rest, balanced_speed, mean_drive_torque, rest_of
 from gearidae.scene import GearScene
 from gearidae.scene.combinations import may_deflect
 from gearidae.scene.friction import has_flank_friction
@@ -36,12 +41,16 @@ _STEPS_AN_IMPACT: Final = 50.0
 """Steps of one impact with elastic bodies."""
 _EVENTS_A_STEP: Final = 0.12
 """Events for each step that is estimated: 0.08 to 0.15 in the shipped cases, 0.03 where the gears rest for long."""
+_WEIGHTLESS: Final = 1e-20
+"""Force of teeth that adhesion alone holds together: less than any that a scene has, and more than none [N]."""
 _GAP_ERROR: Final = 0.02
 """Error of the gap at rest, in roughnesses: 5 % of the frequency."""
 _ORDER: Final = 0.125
 """Steps grow as the tolerance to the power of minus this."""
 _RIGID_STEP, _ELASTIC_STEP, _POPULATION_STEP, _FRICTION_STEP = 1e-6, 20e-6, 3e-6, 4e-6
 """Wall time of a step without and with elastic bodies, with real asperities, and with friction [s]."""
+_TRIED: Final = 8
+"""Runs of a sweep whose time is estimated."""
 _SETUP, _ELASTIC_SETUP = 0.04, 0.1
 """Wall time of a run beside its steps: tables of the force law, the verdict [s]; with elastic bodies."""
 
@@ -89,6 +98,8 @@ def run_time(scene: Scene) -> RunTime:
         rate, frequency, load = _rate(rest.contact, gap, rest.mass)
         has_play = scene.mesh.backlash > scene.surface.roughness
         bounces = has_play and load > rest.load and float(rest.contact.force(gap)) > 0.0
+        if not rest.load > 0.0:
+            oscillations.append(_undriven(scene, rest))
         oscillations.append((rate * _STEPS_A_BOUNCE / _STEPS_A_PERIOD if bounces else rate, frequency, load))
         steps = _STEPS_A_PASSAGE * _passages(scene)
     rate, frequency, load = max(oscillations)
@@ -108,6 +119,30 @@ def run_time(scene: Scene) -> RunTime:
     return RunTime(steps, setup + steps * cost, frequency)
 
 
+def time_in_words(scenes: Sequence[Scene], runs: int, workers: int | None) -> str:
+    """Say how long runs will take, side by side on some cores: ``"some 3 min with 2 at a time, ..."``.
+
+    Parameters
+    ----------
+    scenes : sequence of Scene
+        Runs, or a sample of them; eight at most are estimated, spread over all.
+    runs : int
+        How many runs there are.
+    workers : int or None
+        Number of simultaneous runs; None for one after the other.
+
+    Returns
+    -------
+    str
+    """
+    tried, at_a_time = scenes[:: -(-len(scenes) // _TRIED)], min(workers or 1, runs)
+    seconds = runs / at_a_time * sum(run_time(scene).seconds for scene in tried) / len(tried)
+    if seconds < 1.0:
+        return "less than a second"
+    side_by_side = f" with {at_a_time} at a time" if at_a_time > 1 else ""
+    return f"some {in_words(seconds)}{side_by_side}, within a factor of about three"
+
+
 def _rate(contact: PairContact, gap: float, mass: float) -> tuple[float, float, float]:
     """Steps per second of simulated time, frequency [Hz] and force [N] of an oscillation about a gap."""
     if math.isnan(gap):
@@ -124,6 +159,18 @@ def _rate(contact: PairContact, gap: float, mass: float) -> tuple[float, float, 
         frequency,
         abs(float(contact.force(gap))),
     )
+
+
+def _undriven(scene: GearScene, rest: Rest) -> tuple[float, float, float]:
+    """Oscillation of gears that nothing drives: the load slows the gear down, and the pinion follows it."""
+    gears, geometry = scene.gears, scene.geometry
+    linear, quadratic = slowing(scene, LOAD)
+    speed = abs(scene.initial.gear_speed)
+    force = speed * (linear + quadratic * speed) / geometry.base_radius_gear
+    force *= rest.mass / (
+        gears.gear_inertia / geometry.base_radius_gear**2
+    )  # the pinion's share of what moves
+    return _rate(rest.contact, rest.contact.resting_gap(max(force, _WEIGHTLESS), _GAP_ERROR), rest.mass)
 
 
 def _passages(scene: GearScene) -> float:

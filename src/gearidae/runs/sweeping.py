@@ -34,7 +34,7 @@ def sweep(
     t_end: float | None = None,
     samples: int | str | None = None,
     backend: str = "auto",
-    progress: bool | SweepProgress = False,
+    progress: bool | SweepProgress = True,
     archive: str | os.PathLike[str] | None = None,
     overwrite: bool = False,
     jobs: int | None = None,
@@ -66,8 +66,9 @@ def sweep(
     overwrite : bool, optional
         Whether `archive` may replace a file, and the runs of an unfinished sweep beside it be discarded.
     progress : bool or callable, optional
-        True for a progress bar on a terminal or in a notebook, or a function of the number of finished runs (with
-        fractions for those under way, where they can be seen) and the number of runs.
+        True for a progress bar on a terminal or in a notebook, with the time that is left, and a line in the log where
+        neither is there and the runs take more than a minute; False for none; or a function of the number of finished
+        runs (with fractions for those under way, where they can be seen) and the number of runs.
     jobs : int, optional
         Runs at a time; by default the number of usable cores. Ignored if `executor` is given.
     zipped : bool or collection of str, optional
@@ -189,7 +190,7 @@ def run_plan(
     Interrupted
         On Ctrl-C, with the runs that are finished; the others are marked.
     """
-    with sweep_progress(execution.progress, len(plan.scenes)) as report:
+    with sweep_progress(execution.progress, len(plan.scenes), lambda: execution.words(plan.scenes)) as report:
         batch = Batch(plan, execution.backend, report, kept, keep)
         try:
             if kept is not None and kept.count():

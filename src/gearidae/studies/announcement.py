@@ -7,13 +7,11 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearidae.progress import in_words
-
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
 _TRIED: Final = 8
-"""Runs whose time is estimated."""
+"""Quantiles of the distributions whose runs stand for all."""
 
 
 def grid_words(
@@ -41,7 +39,7 @@ def grid_words(
 
     scenes = plan_sweep(scene, over, zipped=zipped).scenes
     ranges = " and ".join(f"{key} {_range(values)}" for key, values in over.items())
-    return _words(ranges, scenes[:: -(-len(scenes) // _TRIED)], len(scenes), workers)
+    return _words(ranges, scenes, len(scenes), workers)
 
 
 def draw_words(scene: Scene, keys: Mapping[str, str], runs: int, workers: int | None) -> str:
@@ -77,15 +75,10 @@ def draw_words(scene: Scene, keys: Mapping[str, str], runs: int, workers: int | 
 
 
 def _words(over: str, tried: Sequence[Scene], runs: int, workers: int | None) -> str:
-    from gearidae.runs.run_time import run_time
+    from gearidae.runs.run_time import time_in_words
 
-    at_a_time = min(workers or 1, runs)
-    seconds = runs / at_a_time * sum(run_time(scene).seconds for scene in tried) / len(tried)
-    many, long = f"{runs} run{'s' if runs > 1 else ''}", "less than a second"
-    if seconds >= 1.0:
-        side_by_side = f" with {at_a_time} at a time" if at_a_time > 1 else ""
-        long = f"some {in_words(seconds)}{side_by_side}, within a factor of about three"
-    return f"{many}, {over}; {long}"
+    many = f"{runs} run{'s' if runs > 1 else ''}"
+    return f"{many}, {over}; {time_in_words(tried, runs, workers)}"
 
 
 def _range(values: Sequence[Any]) -> str:
