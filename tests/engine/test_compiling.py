@@ -82,3 +82,26 @@ def test_functions_are_counted_on_a_terminal(fresh, caplog, monkeypatch):
             fresh()(1.0)
     assert "compiling the toy for this machine: once, no time: 3 functions" in shown.getvalue()
     assert [message.split(" in ")[0] for message in caplog.messages] == ["the toy: 3 functions compiled"]
+
+
+def test_how_far_it_is_is_said_at_each_quarter_without_a_terminal(fresh, caplog):
+    with compiling("the toy", "no time", 8):
+        for _ in range(9):
+            fresh()(1.0)
+    assert [message.split(" functions")[0] for message in caplog.messages[1:]] == [
+        "the toy: 2 of about 8",
+        "the toy: 4 of about 8",
+        "the toy: 6 of about 8",
+        "the toy: 9",
+    ]
+
+
+def test_functions_are_counted_against_all_of_them_on_a_terminal(fresh, monkeypatch):
+    shown = Terminal()
+    monkeypatch.setattr(sys, "stderr", shown)
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setenv("COLUMNS", "120")
+    with compiling("the toy", "no time", 4):
+        for _ in range(3):
+            fresh()(1.0)
+    assert "3 of about 4 functions" in shown.getvalue()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import math
 import sys
 import threading
 from collections.abc import Iterator
@@ -29,16 +30,25 @@ HOW_LONG: Final = {
     FRICTION: "some ten seconds",
 }
 """How long that takes."""
+FUNCTIONS: Final = {
+    SOLVER: 564,
+    ELASTIC: 73,
+    POPULATION: 32,
+}
+"""How many functions that are, counted with an empty cache; the other parts are too short to ask."""
+_QUARTERS: Final = (0.25, 0.5, 0.75)
+"""Shares of the functions after which a line says how far it is, where no line can be rewritten."""
 
 _one_at_a_time = threading.RLock()
 _depth = 0
 
 
 @contextmanager
-def compiling(what: str, how_long: str) -> Iterator[None]:
+def compiling(what: str, how_long: str, functions: int = 0) -> Iterator[None]:
     """Say that something is compiled, if it is and when it is: code that is read from disk needs no words.
 
-    On a terminal a line counts the functions, without one a line before and one after say it.
+    On a terminal a line counts the functions; without one a line before and one after say it, and three between them
+    how far it is.
 
     Parameters
     ----------
@@ -46,6 +56,8 @@ def compiling(what: str, how_long: str) -> Iterator[None]:
         What is compiled here, for instance "the solver".
     how_long : str
         How long that takes at most, in words.
+    functions : int, optional
+        How many functions that are, about; 0 if nobody knows.
     """
     global _depth
     with _one_at_a_time, ExitStack() as stack:
@@ -54,7 +66,7 @@ def compiling(what: str, how_long: str) -> Iterator[None]:
         if _depth > 1:  # the outer one says it
             yield
             return
-        listener = CompileListener(what, how_long)
+        listener = CompileListener(what, how_long, functions)
         stack.callback(listener.end)
         stack.enter_context(event.install_listener("numba:compile", listener))
         yield
@@ -63,7 +75,7 @@ def compiling(what: str, how_long: str) -> Iterator[None]:
 def make_part_ready(part: str) -> None:
     """Compile a part of the engine, or take it from the cache, before the first scene that needs it is run."""
     if not is_ready(part):
-        with compiling(part, HOW_LONG[part]):
+        with compiling(part, HOW_LONG[part], FUNCTIONS.get(part, 0)):
             make_ready(part)
 
 
@@ -75,8 +87,9 @@ def _leave() -> None:
 class CompileListener(event.Listener):
     """Counts and shows the functions that numba compiles because it has not found them on disk."""
 
-    def __init__(self, what: str, how_long: str) -> None:
-        self._what, self._how_long = what, how_long
+    def __init__(self, what: str, how_long: str, functions: int) -> None:
+        self._what, self._how_long, self._functions = what, how_long, functions
+        self._quarters = [math.ceil(share * functions) for share in _QUARTERS] if functions else []
         self._began: float | None = None
         self._count, self._line = 0, ExitStack()
         self._status: Any = None
@@ -90,8 +103,12 @@ class CompileListener(event.Listener):
     def on_end(self, done: Any) -> None:
         """Take note of a function that is done."""
         self._count += 1
+        of = f" of about {self._functions}" if self._count < self._functions else ""
         if self._status is not None:
-            self._status.update(f"{self._sentence()}: {self._count} functions")
+            self._status.update(f"{self._sentence()}: {self._count}{of} functions")
+        elif self._count in self._quarters and self._began is not None:
+            seconds = monotonic() - self._began
+            log.warning("%s: %d%s functions after %.0f s", self._what, self._count, of, seconds)
 
     def end(self) -> None:
         """Say that it is over."""

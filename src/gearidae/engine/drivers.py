@@ -9,7 +9,7 @@ from importlib import import_module
 from itertools import islice
 from types import ModuleType
 
-from gearidae.engine.compiling import HOW_LONG, SOLVER, compiling, make_part_ready
+from gearidae.engine.compiling import FUNCTIONS, HOW_LONG, SOLVER, compiling, make_part_ready
 from gearidae.engine.integrate.driver import Block
 from gearidae.engine.setup.problem import Problem
 from gearidae.records import Statistics
@@ -23,7 +23,7 @@ TINY = 1e-3  # of the unit of time: how long a run is that is made to have every
 TINY_BLOCKS = 3
 """Blocks after which that run is left, though asperities by the million may make it a long one."""
 
-_solver_compiling = partial(compiling, SOLVER, HOW_LONG[SOLVER])
+_solver_compiling = partial(compiling, SOLVER, HOW_LONG[SOLVER], FUNCTIONS[SOLVER])
 """Says so while the solver is compiled."""
 
 
