@@ -2,10 +2,11 @@
 
 A solver that keeps to its tolerance takes a number of steps for each oscillation of the contact, so that the fastest
 oscillation decides. Its frequency follows from the contact's stiffness: where the teeth rest under the mean torque, and
-where they are at the start; without
-a drive where adhesion, or the load that slows the gear down, holds them. Of real asperities, few of which touch at a time, the stiffness of a single one decides.
-Measured on the shipped cases and on presets with 0 to 100 % of the monolayer the estimate is within a factor of three;
-a run that sticks, flies freely, or whose teeth stop vibrating, takes fewer steps than it says.
+where they are at the start; without a drive, where adhesion or the load that slows the gear down holds them. Of real
+asperities, few of which touch at a time, the stiffness of a single one decides.
+Measured on the shipped cases, on presets with 0 to 100 % of the monolayer, and on twenty drawn scenes the estimate is
+within a factor of three; a run that sticks, flies freely, or whose teeth stop vibrating, takes fewer steps than it
+says.
 """
 
 from __future__ import annotations
