@@ -14,8 +14,11 @@ import gearidae as gd
 from gearidae.analysis.verdict import outcomes
 from gearidae.cli import main
 from gearidae.cli.tables import show_summary
+from gearidae.drawing.style import runs_of
 from gearidae.records import EventKind
 from gearidae.report import build_report, write_report
+from gearidae.report import page as report_page
+from gearidae.report import series as report_series
 from gearidae.report.series import pack
 from gearidae.scene.prefixes import with_prefix
 
@@ -114,7 +117,7 @@ def test_texts_of_the_scene_are_escaped(texts):
     assert "alert(1)" in page.text  # shown as what it is
 
 
-def test_everything_from_a_file_is_escaped(swept, tmp_path):
+def test_everything_from_a_file_is_escaped(tmp_path):
     """Each text that a page can show, in a file that somebody else has written."""
     path = tmp_path / "nasty.nc"
     words = (
@@ -128,13 +131,13 @@ def test_everything_from_a_file_is_escaped(swept, tmp_path):
         "license",
         "product_version",
     )
-    ds = swept.assign_attrs(dict.fromkeys((*words, "date_created", "zipped", "another"), NASTY))
-    scene = json.loads(ds.attrs["scene"]) | {"name": NASTY}
-    ds = ds.assign_attrs(scene=json.dumps(scene), swept=json.dumps({"coating.sam_fraction": [NASTY, 0.5]}))
+    scene = gd.preset("teodorescu2009_low_speed").replace({"name": NASTY})
+    ds = gd.sweep(scene, {"coating.sam_fraction": [1.0, 0.5]}, t_end=1e-3, samples=11)
+    ds = ds.assign_attrs(dict.fromkeys((*words, "date_created", "zipped", "another"), NASTY))
     ds["message"] = ds["message"].copy(data=np.array([NASTY, "plain"], dtype=object))
     ds["status"] = ds["status"].copy(data=np.array([NASTY, "finished"], dtype=object))
-    ds["gear_speed"].attrs |= {"long_name": NASTY, "units": NASTY}
-    ds["sam_fraction"].attrs |= {"long_name": NASTY, "units": NASTY}
+    ds["gear_speed"].attrs["long_name"] = NASTY  # another unit is refused
+    ds["sam_fraction"].attrs["long_name"] = NASTY
     ds.to_netcdf(path)
     text = build_report(gd.open_archive(path))
     page = Page(text)
@@ -174,11 +177,82 @@ def test_long_series_keep_their_extremes(swept):
     data = pack(swept, most_values=9 * 2 * 200)
     assert data["reduced"] > 1
     for series in data["series"]:
-        for run, text in enumerate(series["runs"]):
-            embedded, samples = decoded(text), swept[series["name"]].values[run]
+        for fraction, text in zip((0.5, 1.0), series["runs"], strict=True):
+            embedded = decoded(text)
+            samples = swept[series["name"]].sel(sam_fraction=fraction).values
             assert len(embedded) <= 202
             assert embedded.min() == np.float32(samples.min())
             assert embedded.max() == np.float32(samples.max())
+
+
+@pytest.fixture(scope="module")
+def grid():
+    """More runs than a picture shows, and their keys in falling order."""
+    over = {"coating.sam_fraction": [1.0, 0.7, 0.5], "mesh.backlash": [3e-7, 2e-7, 1e-7]}
+    return gd.sweep(gd.preset("teodorescu2009_low_speed"), over, t_end=0.04, samples=2001, jobs=1)
+
+
+def test_all_runs_of_a_large_sweep_are_in_the_page(grid):
+    data = pack(grid, most_values=12 * 9 * 100)
+    dims = data["outcomes"]["dims"]
+    assert [dim["values"] for dim in dims] == [["0.5", "0.7", "1"], ["100 nm", "200 nm", "300 nm"]]
+    by_name = {series["name"]: series["runs"] for series in data["series"]}
+    places = [(fraction, backlash) for fraction in (0.5, 0.7, 1.0) for backlash in (1e-7, 2e-7, 3e-7)]
+    for (fraction, backlash), text, run in zip(places, by_name["gear_speed"], data["runs"], strict=True):
+        samples = grid.gear_speed.sel(sam_fraction=fraction, backlash=backlash).values
+        assert decoded(text).min() == np.float32(samples.min())
+        assert decoded(text).max() == np.float32(samples.max())
+        assert run["label"] == f"SAM {100 * fraction:g} %, backlash {1e9 * backlash:g} nm"
+        mine = (grid.event_sam_fraction == fraction) & (grid.event_backlash == backlash)
+        onsets = grid.event_time.values[mine & (grid.event_kind == EventKind.ONSET)]
+        np.testing.assert_allclose(run["onsets"], onsets, rtol=1e-8)
+    # those of the pictures are drawn first, in their order, which gives them their colours
+    shown = [run.label for run in runs_of(grid, "gear_speed")]
+    assert [data["runs"][number]["label"] for number in data["chosen"]] == shown
+    assert len(shown) == data["most"] == 7
+
+
+def test_runs_of_a_large_sweep_share_the_numbers(grid, monkeypatch):
+    monkeypatch.setattr(report_series, "MOST_OF_MANY", 20_000)
+    assert max(len(run["separations"]) for run in pack(grid)["runs"]) >= 1
+    monkeypatch.setattr(report_series, "_MOST_OF_ALL", 8)  # fewer than there are runs
+    data = pack(grid)
+    embedded = sum(decoded(text).size for each in data["series"] for text in each["runs"])
+    assert embedded <= 20_000 + 2 * len(data["series"]) * 9  # the last interval of a run need not be full
+    assert max(len(run["separations"]) for run in data["runs"]) == 0
+
+
+def test_teeth_of_a_large_sweep_are_those_of_seven_runs(grid, monkeypatch):
+    monkeypatch.setattr(report_page, "_SOON_OF_MANY", 0.0)
+    assert "Not shown. For the teeth in mesh" in build_report(grid)
+    monkeypatch.setattr(report_page, "_SOON_OF_MANY", 1e9)
+    page = Page(build_report(grid))
+    assert "7 of 9 runs: the first, the last, and those" in page.text
+    teeth = json.loads(next(script for script in page.scripts if script.startswith('{"columns"')))
+    labels = [run.label for run in runs_of(grid, "gear_speed")]
+    assert [run["label"] for run in teeth["runs"]] == labels
+
+
+def test_a_part_of_a_sweep_names_what_was_selected(grid, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    gd.save(grid, "grid.nc")
+    assert "backlash selected: 200 nm" in Page(build_report(grid.sel(backlash=2e-7))).text
+    assert main(["report", "grid.nc", "--select", "backlash=2e-7", "-o", "three.html"]) == 0
+    three = Page((tmp_path / "three.html").read_text(encoding="utf-8"))
+    assert "3 runs" in three.text
+    assert "swept: 1, 0.7, 0.5" in three.text
+    one = ["--select", "backlash=2e-7", "--select", "sam_fraction=0.5", "-o", "one.html"]
+    assert main(["report", "grid.nc", *one]) == 0
+    page = Page((tmp_path / "one.html").read_text(encoding="utf-8"))
+    assert "swept:" not in page.text
+    assert "coating.sam_fraction 0.5" in page.text
+    run = grid.sel(backlash=2e-7, sam_fraction=0.5)
+    assert outcomes(run)[0].words in page.text
+    by_name = {each["name"]: each["runs"] for each in page.data["series"]}
+    np.testing.assert_allclose(decoded(by_name["gear_speed"][0]), run.gear_speed, rtol=1e-7)
+    capsys.readouterr()
+    assert main(["report", "grid.nc", "--select", "tooth=1", "-o", "no.html"]) == 2
+    assert "must be one of sam_fraction, backlash" in capsys.readouterr().err
 
 
 def test_run_that_ended_early(single):
@@ -256,6 +330,21 @@ def test_a_page_says_what_a_direct_call_warns_of(single, texts):
     note = "Power spectrum of the gear's speed. Sampling at 2000 Hz is below twice"
     assert note in Page(build_report(coarse)).text
     assert note not in Page(texts["single"]).text
+
+
+def test_spectra_say_which_lines_may_be_aliases(grid):
+    """At 2.5 kHz contacts ring faster than is seen; at 50 kHz none of them does."""
+    coarse = grid.isel(time=slice(None, None, 20))
+    run = coarse.isel(sam_fraction=0, backlash=0)
+    note = gd.analysis.impact_frequencies(run).attrs["note"]
+    page = Page(build_report(run, teeth=False)).text
+    assert f"Spectrum of the ringing after mesh impacts: not drawn, {note}." in page
+    text = build_report(coarse, teeth=False)
+    drawn = re.search(r'data-name="power_spectrum".*?</figure>', text, flags=re.DOTALL)[0]
+    words = " ".join(re.sub("<[^>]*>", " ", drawn).split())
+    assert re.search(r"SAM \d+ %, backlash \d+ nm \(and \d more of the 7 runs shown\): contacts ring", words)
+    assert "may be aliases" in words
+    assert "may be aliases" not in Page(build_report(grid, teeth=False)).text
 
 
 def test_parts_of_drawings_are_named_apart(texts):

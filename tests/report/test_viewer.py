@@ -11,6 +11,7 @@ import pytest
 
 import gearidae as gd
 from gearidae.report import build_report
+from gearidae.report.series import pack
 from reference.browser import CHROMIUM, looked_at
 
 # Uses the page as a reader would, and leaves what it saw in the title.
@@ -126,3 +127,98 @@ def test_the_table_is_what_is_shown(swept, tmp_path):
         np.testing.assert_allclose(
             numbers[:, column], shown.gear_speed.sel(sam_fraction=fraction), rtol=1.2e-7
         )
+
+
+# Chooses runs on the map of a large sweep, and leaves what is drawn in the title.
+CHOOSE = """<script>
+const seen = { errors: [], steps: [] };
+window.onerror = (message) => seen.errors.push(message);
+const made = [];
+window.Blob = class extends Blob {
+  constructor(parts, options) { super(parts, options); made.push(parts.join("")); }
+};
+HTMLAnchorElement.prototype.click = () => {};
+const frames = (count) => new Promise((done) => {
+  const next = () => count-- > 0 ? requestAnimationFrame(next) : done();
+  next();
+});
+const fields = () => [...document.querySelectorAll("#choice .fields button")];
+const all = (words) => [...document.querySelectorAll(words)];
+const legend = () => all("#viewer .controls button").filter((one) => one.querySelector("svg"));
+const taken = () => fields().filter((one) => one.getAttribute("aria-pressed") === "true");
+const pixels = () => document.querySelector("#viewer canvas").toDataURL();
+const button = (words) => [...document.querySelectorAll("button")].find((one) => one.textContent === words);
+const note = () => {
+  button("CSV").click();
+  seen.steps.push({
+    legend: legend().map((one) => one.textContent),
+    pressed: taken().map((one) => one.title),
+    edges: taken().map((one) => one.style.borderBottomColor),
+    dashes: legend().map((one) => one.querySelector("path").getAttribute("stroke-dasharray")),
+    heading: made.at(-1).split("\\n").find((line) => line.startsWith('"time')),
+    picture: pixels(),
+  });
+};
+(async () => {
+  await frames(3);
+  const list = document.querySelector("#choice select"), isFree = (one) => one.getAttribute("aria-pressed") === "false";
+  seen.parts = [];
+  for (const option of list.options) {
+    list.value = option.value;
+    list.dispatchEvent(new Event("change"));
+    seen.parts.push(fields().map((one) => one.title));
+    if (fields().some(isFree)) break;
+  }
+  note();
+  const free = fields().find(isFree);
+  seen.clicked = free.title;
+  free.click();
+  await frames(3);
+  note();
+  free.click();
+  await frames(3);
+  note();
+  seen.wide = document.documentElement.scrollWidth - document.documentElement.clientWidth;
+  document.title = JSON.stringify(seen);
+})();
+</script>"""
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")
+@pytest.mark.parametrize("size", ["1200,900", "500,900"], ids=["desktop", "phone"])
+def test_runs_of_a_large_sweep_are_chosen_on_the_map(size, tmp_path):
+    over = {
+        "drive.torque": [4.5e-18, 9e-18],
+        "coating.sam_fraction": [1.0, 0.6],
+        "mesh.backlash": [2e-7, 1e-7],
+    }
+    scene = gd.preset("teodorescu2009_low_speed")
+    ds = gd.sweep(scene, over, t_end=0.004, samples=101, jobs=1)
+    seen = looked_at(build_report(ds, teeth=False), CHOOSE, tmp_path, f"--window-size={size}")
+    assert seen["errors"] == []
+    first, taken, left = seen["steps"]
+    # seven of eight at first; the other takes the place of the first and with it its line
+    assert len(first["legend"]) == 7
+    assert len(first["pressed"]) == 3
+    (new,) = {run["label"] for run in pack(ds)["runs"]} - {*first["legend"]}
+    assert taken["legend"] == [new, *first["legend"][1:]]
+    assert taken["dashes"] == first["dashes"]
+    assert seen["clicked"] in taken["pressed"]
+    assert len({*taken["pressed"]} - {*first["pressed"]}) == 1
+    # a second click takes it out, and the others keep their lines
+    assert left["legend"] == first["legend"][1:]
+    assert left["dashes"] == first["dashes"][1:]
+    assert seen["clicked"] not in left["pressed"]
+    for step in seen["steps"]:
+        columns = next(csv.reader([step["heading"]]))
+        speeds = [
+            name.removeprefix("gear_speed [rad s-1] ") for name in columns if name.startswith("gear_speed")
+        ]
+        assert speeds == step["legend"]
+        assert len({*step["edges"]}) == len(step["pressed"])  # a colour each
+    assert len({step["picture"] for step in seen["steps"]}) == 3
+    # three keys: the map shows the last two, a list the other
+    for part, torque in zip(seen["parts"], ("4.5", "9"), strict=False):
+        assert len(part) == 4
+        assert all(title.startswith(f"torque {torque} aN m, ") for title in part)
+    assert seen["wide"] <= 0

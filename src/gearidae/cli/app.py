@@ -178,19 +178,24 @@ def plot(
 def report(
     archive: Annotated[Path, Parameter(help="Archive to report on.")],
     *,
+    select: Annotated[
+        list[str] | None,
+        Parameter(help="Select a part of a sweep: sam_fraction=0.5; repeatable.", consume_multiple=False),
+    ] = None,
     output: Output = None,
     overwrite: Overwrite = False,
     teeth: Annotated[
         bool | None,
         Parameter(
-            help="Show the teeth in mesh, for which the scene runs again. Default: where that takes less than a minute."
+            help="Show the teeth in mesh, for which seven runs at most run again. Default: where that takes less than "
+            "a minute, of a sweep of more than seven runs ten seconds."
         ),
     ] = None,
 ) -> int:
     """Write one self-contained HTML page about an archive: outcome, time series, pictures, events, scene."""
     from gearidae.cli.pictures import report_archive
 
-    return report_archive(archive, output, overwrite=overwrite, teeth=teeth)
+    return report_archive(archive, output, select=select or [], overwrite=overwrite, teeth=teeth)
 
 
 @app.command

@@ -116,7 +116,9 @@ def _is_moving(path: Path) -> bool:
     return path.suffix.lower().removeprefix(".") in MOVING
 
 
-def report_archive(archive: Path, output: Path | None, *, overwrite: bool, teeth: bool | None) -> int:
+def report_archive(
+    archive: Path, output: Path | None, *, select: Sequence[str], overwrite: bool, teeth: bool | None
+) -> int:
     """Write the report of an archive.
 
     Parameters
@@ -125,6 +127,8 @@ def report_archive(archive: Path, output: Path | None, *, overwrite: bool, teeth
         What to report on.
     output : Path or None
         HTML file to write; None for the archive's name with ``.html``.
+    select : sequence of str
+        ``dimension=value``: which part of a sweep.
     overwrite : bool
         Whether the page may replace a file.
     teeth : bool or None
@@ -138,15 +142,20 @@ def report_archive(archive: Path, output: Path | None, *, overwrite: bool, teeth
     Raises
     ------
     SceneError
-        If the archive cannot be read or the page cannot be written.
+        If the archive cannot be read, has no such runs, or the page cannot be written.
     """
-    from gearidae.archive.select import scene_of
+    from gearidae.archive.select import scene_of, single_run
     from gearidae.report import write_report
     from gearidae.runs.kept_validity import with_validity
     from gearidae.scene.validity_row import ATTRIBUTE
     from gearidae.studies.products import open_product
 
-    ds, _ = open_product(archive)
+    ds, kind = open_product(archive)
+    if select and kind != "runs":
+        raise SceneError("--select", select[0], f"needs a sweep, not the file of a study ({kind})")
+    if select:
+        ds = selected(ds, select, "--select", swept_dims(ds))
+        ds = ds if swept_dims(ds) else single_run(ds)
     if ATTRIBUTE not in ds.attrs:
         ds = with_validity(ds, gd.Scene.from_dict(scene_of(ds)))
     target = output or default_output(str(archive), ".html")

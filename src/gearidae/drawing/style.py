@@ -40,13 +40,14 @@ LINE_STYLES = (
 )
 POSITIVE, NEGATIVE = COLOURS[:2]
 """Colours of what pushes and of what pulls."""
+MOST_RUNS = 7
+"""Runs that one picture shows at most."""
 
 _PREFIXED = ("m", "s", "Pa", "Hz", "N", "N m", "J", "W")
 _SPELT = {"rad s-1": "rad/s", "m s-1": "m/s", "kg m2": "kg m²", "J m-2": "J/m²", "m-2": "1/m²"}
 _AT_END = ("finished", "stopped")
 """Status of runs that have come to their end."""
 _MOST_POINTS = 6000
-_MOST_RUNS = 7
 _LONGEST_LABEL = 32
 _IN_A_LINE = 84
 """Characters of a legend that a line of a picture takes."""
@@ -68,6 +69,8 @@ class Run:
         How matplotlib shall draw it.
     of : int
         Number of runs that could be drawn; more than those that are, if they are too many.
+    number : int
+        Its place among all runs of the dataset, of which the last dimension changes fastest.
     """
 
     label: str
@@ -75,6 +78,7 @@ class Run:
     colour: str
     line: Any
     of: int
+    number: int
 
     def trace(self, name: str) -> tuple[Floats, Floats]:
         """Time [s] and samples [SI] up to where the run ended, thinned for drawing."""
@@ -120,26 +124,25 @@ def runs_of(ds: xr.Dataset, name: str) -> list[Run]:
     everything = list(runs(ds)) if name in ds else []
     kept = [number for number, (_, run) in enumerate(everything) if _has_samples(run[name])]
     drawable = len(kept)
-    if drawable > _MOST_RUNS:
+    if drawable > MOST_RUNS:
         judged = outcomes(ds)
-        kept = [kept[number] for number in pick([judged[place].verdict for place in kept], _MOST_RUNS)]
+        kept = [kept[number] for number in pick([judged[place].verdict for place in kept], MOST_RUNS)]
     chosen = [everything[number] for number in kept]
     if not chosen:
         raise SceneError("plot", name, "the dataset has no samples of it")
-    labels = [_label(label, run) for label, run in chosen]
-    short = [_shortened(label) for label in labels]
-    if len(set(short)) == len(set(labels)):
-        labels = short
     return [
         Run(
-            labels[number],
-            run,
-            COLOURS[number % len(COLOURS)],
-            LINE_STYLES[number % len(LINE_STYLES)],
-            drawable,
+            label, run, COLOURS[place % len(COLOURS)], LINE_STYLES[place % len(LINE_STYLES)], drawable, number
         )
-        for number, (_, run) in enumerate(chosen)
+        for place, (label, number, (_, run)) in enumerate(zip(run_labels(chosen), kept, chosen, strict=True))
     ]
+
+
+def run_labels(chosen: Sequence[tuple[Mapping[str, Any], xr.Dataset]]) -> list[str]:
+    """Name runs from `gearidae.archive.select.runs` by their swept values, shortened where they stay apart."""
+    labels = [_label(label, run) for label, run in chosen]
+    short = [_shortened(label) for label in labels]
+    return short if len(set(short)) == len(set(labels)) else labels
 
 
 def scale_for(largest: float, unit: str) -> Scale:

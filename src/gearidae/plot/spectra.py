@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
+from textwrap import wrap
 from typing import Any
 
 import numpy as np
@@ -42,6 +44,8 @@ _FLAT = ("tukey", 0.2)
 _MULTIPLES = 6.0
 _MARKED_IF_WIDE = 4
 """Multiples of the highest line that a linear axis shows, and of the mesh that are marked on a logarithmic one."""
+_IN_A_LINE = 95
+"""Characters of a note that a line below a picture takes."""
 _MOST_SAMPLES = 2**19
 """Samples of a run that are analysed for a picture, which could not show more lines."""
 
@@ -131,8 +135,9 @@ def power_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     drive = [float(harmonic["frequency"]) for harmonic in harmonics if "frequency" in harmonic]
     settled = [_settled(run, _SETTLED) for run in shown]
     mesh = max((_mesh_frequency(ds, part) for part in settled if _has_one_speed(part)), default=0.0)
-    found = [] if drive else [impacts for run in shown if (impacts := _impacts(run)) is not None]
-    rings = sorted({float(ring) for impacts in found for ring in impacts["frequency"].values if ring > 0.0})
+    found = [_impacts(run) for run in shown]
+    responses = [] if drive else [impacts["frequency"].values for impacts in found if impacts is not None]
+    rings = sorted({float(ring) for values in responses for ring in values if ring > 0.0})
     lines = [line for line in (mesh, *drive) if line > 0.0]
     wide = bool(rings and lines) and rings[-1] > _MULTIPLES * max(lines)
     # one segment: the lines stand still, and the resolution separates them; zeros draw their shape instead of a zigzag
@@ -155,10 +160,9 @@ def power_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     _fit_heights(ax, wide)
     _mark_all(ax, drive, mesh, rings if wide and len(shown) == 1 else [])
     _name_estimate(ax, resolution, wide)
-    for impacts in found:
-        _note_aliases(ax, impacts)
     ax.xaxis.set_major_formatter(EngFormatter("Hz"))
     ax.set_xlabel("frequency")
+    _note_aliases(ax, _alias_note(shown, found))
     ax.set_ylabel("power spectral density\n((rad/s)²/Hz)")
     tidy(ax)
     legend(ax, shown)
@@ -206,6 +210,7 @@ def orders(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     _mark(ax, mesh / int(gears["pinion_teeth"]), "pinion")
     _mark_all(ax, [], float(mesh), [])
     ax.set_xlabel("order (per turn of the gear)")
+    _note_aliases(ax, alias_note(ds))
     ax.set_ylabel("power spectral density\n((rad/s)²)")
     tidy(ax)
     legend(ax, shown)
@@ -270,9 +275,9 @@ def spectrogram(ds: xr.Dataset, ax: Axes | None = None, *, highest: float | None
     ax.set_ylim(0.0, shown)
     if ax.get_lines():
         ax.legend(loc="upper left", fontsize="small", labelcolor="white", facecolor="0.2")
-    _note_aliases(ax, found)
     ax.yaxis.set_major_formatter(EngFormatter("Hz"))
     ax.set_xlabel(f"time ({scale.unit})")
+    _note_aliases(ax, str(found.attrs.get("note", "")))
     ax.set_ylabel("frequency")
     return ax
 
@@ -300,11 +305,11 @@ def impact_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     shown = runs_of(ds, "gear_speed")
     ax = new_axes(ax)
     drawn, highest, nyquist = [], 0.0, math.inf
-    notes: list[str] = []
+    responses: list[xr.Dataset | None] = []
     for run in shown:
         record = _between(run.data, 0, _MOST_SAMPLES)
         found = analysis.impact_frequencies(record)
-        notes.append(f"({found.attrs['note']})" if "note" in found.attrs else "")
+        responses.append(found)
         rings = found["frequency"]
         ringing = np.flatnonzero(np.isfinite(rings.values))
         if not ringing.size or hidden(found)[: ringing[0]].any():
@@ -322,15 +327,16 @@ def impact_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
             linewidth=1.0,
             label=drawn[-1].label,
         )
+    note = _alias_note(shown, responses)
     if not highest:
-        raise SceneError(
-            "plot", "impact_spectrum", " ".join(filter(None, ("no impact rings in the dataset", *notes)))
-        )
+        why = "no impact rings in the dataset"
+        raise SceneError("plot", "impact_spectrum", f"{why} ({note})" if note else why)
     ax.set_xlim(0.0, min(nyquist, 2.0 * highest))
     ax.set_ylim(0.0, 1.25)
     ax.xaxis.set_major_formatter(EngFormatter("Hz"))
     ax.set_xlabel("frequency")
     ax.set_ylabel("power spectral density\nover that of the ring")
+    _note_aliases(ax, note)
     tidy(ax)
     if len(drawn) == 1:
         place: dict[str, Any] = {"xytext": (3, 2), "textcoords": "offset points"}
@@ -339,11 +345,54 @@ def impact_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     return ax
 
 
-def _note_aliases(ax: Axes, found: xr.Dataset) -> None:
-    """Say above a picture that its highest lines may be aliases."""
-    if "note" in found.attrs:
-        first, _, rest = str(found.attrs["note"]).partition("; ")
-        ax.set_title(f"{first};\n{rest}", fontsize="x-small", loc="left")
+def alias_note(ds: xr.Dataset) -> str:
+    """Say which of the drawn runs ring faster than their sampling shows, so that lines of a spectrum may be aliases.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A single run or a sweep of a gear pair.
+
+    Returns
+    -------
+    str
+        Of several such runs about the one that rings fastest; empty if there is none.
+
+    Raises
+    ------
+    SceneError
+        If the dataset has no samples of the gear's speed.
+    """
+    shown = runs_of(ds, "gear_speed")
+    return _alias_note(shown, [_impacts(run) for run in shown])
+
+
+def _alias_note(shown: Sequence[Run], found: Sequence[xr.Dataset | None]) -> str:
+    """Say of which runs the responses may be aliases."""
+    noted = [
+        (float(np.nanmax(responses["contact_frequency"])), run.label, str(responses.attrs["note"]))
+        for run, responses in zip(shown, found, strict=True)
+        if responses is not None and "note" in responses.attrs
+    ]
+    if not noted:
+        return ""
+    _, label, note = max(noted)
+    others = f" (and {len(noted) - 1} more of the {len(shown)} runs shown)" if len(noted) > 1 else ""
+    return f"{label}{others}: {note}" if label else note
+
+
+def _note_aliases(ax: Axes, note: str) -> None:
+    """Say below a picture that lines of it may be aliases."""
+    if note:
+        ax.annotate(
+            "\n".join(wrap(note, _IN_A_LINE)),
+            (0.0, 0.0),
+            xycoords=("axes fraction", ax.xaxis.label),
+            xytext=(0, -3),
+            textcoords="offset points",
+            va="top",
+            fontsize="small",
+        )
 
 
 def _single(ds: xr.Dataset) -> xr.Dataset:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from gearidae.analysis.verdict import outcomes
 from gearidae.archive.select import swept_dims
@@ -18,12 +20,25 @@ _SIGNS = {"o": "●", "X": "✕", "D": "◆", "^": "▲", "v": "▼", "<": "◀"
 
 def ascending(ds: xr.Dataset) -> xr.Dataset:
     """Put the runs of a sweep in the order in which sliders and maps show them: numbers from small to large."""
-    order = {
+    return ds.isel(_order(ds))
+
+
+def numbers_ascending(ds: xr.Dataset) -> list[int]:
+    """Place that each run of `ascending` has among the runs of the dataset; the last dimension changes fastest."""
+    order = _order(ds)
+    sizes = [len(places) for places in order.values()]
+    numbers = np.arange(math.prod(sizes)).reshape(sizes)
+    return [int(number) for number in np.ravel(numbers[np.ix_(*order.values())])]
+
+
+def _order(ds: xr.Dataset) -> dict[str, NDArray[np.intp]]:
+    """Order of the values along each swept dimension; what has no numbers stays as it is."""
+    return {
         dim: np.argsort(ds[dim].values, kind="stable")
-        for dim in swept_dims(ds)
         if np.issubdtype(ds[dim].dtype, np.number)
+        else np.arange(ds.sizes[dim])
+        for dim in swept_dims(ds)
     }
-    return ds.isel(order)
 
 
 def pack_outcomes(ds: xr.Dataset) -> dict[str, Any]:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import math
 import os
 from pathlib import Path
 
 import xarray as xr
 
 from gearidae.analysis.verdict.headline import headline
+from gearidae.archive.select import swept_dims
 from gearidae.archive.specimen import specimen_note
 from gearidae.archive.target import whole_file
+from gearidae.drawing.style import number_shown
 from gearidae.errors import SceneError
 from gearidae.plot.overview import usual_pictures
 from gearidae.progress import in_words
@@ -17,7 +20,7 @@ from gearidae.report import html
 from gearidae.report.frame import page
 from gearidae.report.life import life_table, life_viewer
 from gearidae.report.pictures import figures, pictures
-from gearidae.report.series import MOST_VALUES, pack
+from gearidae.report.series import pack
 from gearidae.report.tables import (
     answer_tables,
     event_table,
@@ -26,15 +29,20 @@ from gearidae.report.tables import (
     outcome_table,
     summary_tables,
 )
-from gearidae.report.teeth import pack_runs, runs_with_teeth, time_to_repeat
+from gearidae.report.teeth import MOST_STATES, pack_runs, runs_with_teeth, time_to_repeat
 from gearidae.studies.declared import studies
 from gearidae.studies.products import answer, kind_of
 
-_SOON = 60.0
-"""Wall time [s] up to which runs are repeated for the view of the teeth without being asked for."""
+_SOON, _SOON_OF_MANY = 60.0, 10.0
+"""Wall times [s] up to which runs are repeated for the view of the teeth without being asked for; of large sweeps,
+whose page shows all runs without it, the latter."""
+_STATES_OF_MANY = 1400
+"""States of the teeth that the page of a large sweep holds: 200 of each of its seven runs."""
+_LONG_TABLE = 20
+"""Rows above which a table is folded."""
 
 
-def build_report(ds: xr.Dataset, *, most_values: int = MOST_VALUES, teeth: bool | None = None) -> str:
+def build_report(ds: xr.Dataset, *, most_values: int | None = None, teeth: bool | None = None) -> str:
     """Make one self-contained HTML page about a dataset.
 
     Parameters
@@ -43,10 +51,11 @@ def build_report(ds: xr.Dataset, *, most_values: int = MOST_VALUES, teeth: bool 
         From `simulate`, `sweep`, `open_archive` or `gearidae.studies.life`. What runs have not kept (samples, events)
         is left out.
     most_values : int, optional
-        Numbers to embed at most in the viewer of the time series.
+        Numbers to embed at most in the viewer of the time series; by default 1.5 million, of more than seven runs
+        half a million.
     teeth : bool, optional
-        Whether to show the teeth in mesh, for which the shown runs (seven at most) run again; by default where they
-        have taken no more than a minute. What the page does not show it says.
+        Whether to show the teeth in mesh, for which seven runs at most run again; by default where they have taken no
+        more than a minute, of more than seven runs ten seconds. What the page does not show it says.
 
     Returns
     -------
@@ -62,14 +71,20 @@ def build_report(ds: xr.Dataset, *, most_values: int = MOST_VALUES, teeth: bool 
     if kind != "runs":
         return _study_page(ds, kind)
     sections = (
-        html.section("outcome", "Outcome", _specimen(ds), outcome_table(ds), summary_tables(ds)),
+        html.section("outcome", "Outcome", _specimen(ds), _long(outcome_table(ds), ds), summary_tables(ds)),
         html.section("series", "Time series", _viewer(ds, most_values)),
         html.section("teeth", "Teeth in mesh", _teeth(ds, teeth)),
         html.section("pictures", "Pictures", pictures(ds)),
-        html.section("events", "Events", event_table(ds)),
+        html.section("events", "Events", _long(event_table(ds), ds)),
     )
-    scripts = ("common.js", "save.js", "box.js", "viewer.js", "mesh.js", "teeth.js")
+    scripts = ("common.js", "save.js", "box.js", "map.js", "viewer.js", "mesh.js", "teeth.js")
     return page(ds, "report", headline(ds), sections, scripts)
+
+
+def _long(table: str, ds: xr.Dataset) -> str:
+    """Fold a table that has a row for each run, where there are many."""
+    count = math.prod(ds.sizes[dim] for dim in swept_dims(ds))
+    return html.folded(f"Table of {count} runs", table) if table and count > _LONG_TABLE else table
 
 
 def _specimen(ds: xr.Dataset) -> str:
@@ -128,13 +143,15 @@ def write_report(
     return Path(path)
 
 
-def _viewer(ds: xr.Dataset, most_values: int) -> str:
+def _viewer(ds: xr.Dataset, most_values: int | None) -> str:
     """Place the viewer and its data; without samples there is nothing to view."""
     data = pack(ds, most_values)
     if not data:
         return ""
+    choice = '<div id="choice"></div>\n' if len(data["runs"]) > 1 else ""
     return (
-        '<div id="viewer"><p class="hint">Drag to move, Shift + drag (or b) for a box to zoom into, pinch or Ctrl + '
+        choice
+        + '<div id="viewer"><p class="hint">Drag to move, Shift + drag (or b) for a box to zoom into, pinch or Ctrl + '
         "wheel to zoom; with a plot focused: arrows, + and -, 0 for everything. All plots share their time.</p></div>\n"
         "<noscript><p>The viewer needs JavaScript; the pictures below do not.</p></noscript>\n"
         + html.json_block("data", data)
@@ -146,11 +163,17 @@ def _teeth(ds: xr.Dataset, wanted: bool | None) -> str:
     shown = runs_with_teeth(ds) if wanted is not False else []
     if not shown:
         return ""
-    if wanted is None and (seconds := time_to_repeat(shown)) > _SOON:
+    many = len(shown) < shown[0].of
+    if wanted is None and (seconds := time_to_repeat(shown)) > (_SOON_OF_MANY if many else _SOON):
         again = f"run again, which takes about {in_words(seconds)}: gearidae report --teeth (teeth=True)"
         return html.paragraph(f"Not shown. For the teeth in mesh the scene must {again}.")
     try:
-        data = pack_runs(shown)
+        data = pack_runs(shown, _STATES_OF_MANY if many else MOST_STATES)
     except SceneError as error:
         return html.paragraph(f"Not shown. {error}")
-    return '<div id="teeth-viewer"></div>\n' + html.json_block("teeth-data", data)
+    which = f"{number_shown(shown)}: the first, the last, and those at which the outcome changes."
+    return (
+        (html.paragraph(which, "hint") if many else "")
+        + '<div id="teeth-viewer"></div>\n'
+        + html.json_block("teeth-data", data)
+    )

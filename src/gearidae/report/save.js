@@ -39,16 +39,15 @@
   }
 
   // Panels over the time in view as a CSV table, in SI units.
-  gearidae.tableOf = (data, panels, hidden, indices) => {
+  gearidae.tableOf = (data, panels, runs, indices) => {
     const quoted = (text) => '"' + text.replaceAll('"', '""') + '"';
     const columns = [], names = ["time [s]"];
     for (const panel of panels) {
-      panel.values.forEach((values, run) => {
-        if (hidden.has(run)) return;
-        columns.push(values);
+      for (const run of runs) {
+        columns.push(panel.valuesOf(run));
         const unit = panel.unit ? " [" + panel.unit + "]" : "", label = data.runs.length > 1 ? " " + data.runs[run].label : "";
         names.push(panel.name + unit + label);
-      });
+      }
     }
     const lines = [];
     if (data.reduced > 1) lines.push("# of every " + data.reduced + " samples the smallest and the largest");

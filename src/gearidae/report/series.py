@@ -11,33 +11,41 @@ from numpy.typing import NDArray
 from gearidae.archive.pieces import PIECE, count, pieces
 from gearidae.archive.select import is_roller, runs
 from gearidae.archive.variables import SAMPLES
-from gearidae.drawing.style import runs_of
+from gearidae.drawing.style import MOST_RUNS, run_labels, runs_of
 from gearidae.errors import SceneError
 from gearidae.records import EventKind, sampled_columns
 from gearidae.report import html
+from gearidae.report.outcomes import ascending, numbers_ascending, pack_outcomes
 
 MOST_VALUES = 1_500_000
 """Numbers a page holds at most (8 MB of text); longer series are reduced to the extremes of intervals."""
+MOST_OF_MANY = 500_000
+"""Numbers that a page holds at most (2.7 MB of text) of more runs than one picture shows."""
 _MOST_EVENTS = 2000
+"""Times of contacts made, and broken, of a run."""
+_MOST_OF_ALL = 14_000
+"""Those of all runs."""
 _SHOWN_FIRST = ("gear_speed", "gear_contact_torque", "height", "force")
 
 
-def pack(ds: xr.Dataset, most_values: int = MOST_VALUES) -> dict[str, Any]:
-    """Pack samples and contact events for the viewer.
+def pack(ds: xr.Dataset, most_values: int | None = None) -> dict[str, Any]:
+    """Pack samples and contact events of all runs for the viewer.
 
     Parameters
     ----------
     ds : xarray.Dataset
-        A single run or a sweep; of more than seven runs, seven are packed, as in the pictures.
+        A single run or a sweep.
     most_values : int, optional
-        Numbers to embed at most.
+        Numbers to embed at most, shared by the runs; by default `MOST_VALUES`, of more than seven runs `MOST_OF_MANY`.
 
     Returns
     -------
     dict
         ``end`` [s], ``reduced`` (samples per interval, 1 if none were left out), ``series`` (name, label,
         unit, shown, and per run the base64 text of little-endian float32 values on a uniform grid from 0 to
-        ``end``), ``runs`` (label and times of onsets and separations [s]). Empty without samples.
+        ``end``), ``runs`` (label and times of onsets and separations [s]), ``outcomes`` from
+        `gearidae.report.outcomes.pack_outcomes`, in whose order the runs are, ``chosen`` (which of them are drawn
+        first: those of the pictures, in their order) and ``most`` (that are drawn at once). Empty without samples.
     """
     names = [name for name in sampled_columns(roller=is_roller(ds)) if name in ds]
     samples = ds.sizes.get("time", 0)
@@ -47,8 +55,13 @@ def pack(ds: xr.Dataset, most_values: int = MOST_VALUES) -> dict[str, Any]:
         return {}
     if not shown:
         return {}
-    share = max(2, most_values // (len(names) * len(shown)))
+    order, sorted_ds = numbers_ascending(ds), ascending(ds)
+    members = list(runs(sorted_ds))
+    if most_values is None:
+        most_values = MOST_VALUES if len(members) <= MOST_RUNS else MOST_OF_MANY
+    share = max(2, most_values // (len(names) * len(members)))
     size = block(samples, share)
+    most_events = min(_MOST_EVENTS, _MOST_OF_ALL // len(members))
     series = []
     for name in names:
         variable = SAMPLES[name]
@@ -58,7 +71,7 @@ def pack(ds: xr.Dataset, most_values: int = MOST_VALUES) -> dict[str, Any]:
                 "label": variable.long_name,
                 "unit": "" if variable.units == "1" else variable.units,
                 "shown": name in _SHOWN_FIRST,
-                "runs": [html.numbers(reduced(run.data[name], size)) for run in shown],
+                "runs": [html.numbers(reduced(run[name], size)) for _, run in members],
             }
         )
     return {
@@ -66,8 +79,13 @@ def pack(ds: xr.Dataset, most_values: int = MOST_VALUES) -> dict[str, Any]:
         "samples": samples,
         "reduced": size,
         "series": series,
-        "runs": [{"label": run.label or "run", **_contacts(run.data)} for run in shown],
-        "of": sum(1 for _ in runs(ds)),
+        "runs": [
+            {"label": label or "run", **_contacts(run, most_events)}
+            for label, (_, run) in zip(run_labels(members), members, strict=True)
+        ],
+        "outcomes": pack_outcomes(sorted_ds),
+        "chosen": [order.index(run.number) for run in shown],
+        "most": MOST_RUNS,
     }
 
 
@@ -97,20 +115,20 @@ def _extremes(values: NDArray[np.float64], size: int) -> NDArray[np.float64]:
     return pairs.reshape(-1)
 
 
-def _contacts(run: xr.Dataset) -> dict[str, list[float]]:
+def _contacts(run: xr.Dataset, most: int) -> dict[str, list[float]]:
     """Times of contacts made and broken [s], evenly picked where there are very many; none if no events are kept."""
     return {
-        name: [float(f"{time:.9g}") for time in _times(run, kind)]
+        name: [float(f"{time:.9g}") for time in _times(run, kind, most)]
         for name, kind in (("onsets", EventKind.ONSET), ("separations", EventKind.SEPARATION))
     }
 
 
-def _times(run: xr.Dataset, kind: EventKind) -> NDArray[np.float64]:
-    """Times of the events of a kind, at most `_MOST_EVENTS` of them."""
+def _times(run: xr.Dataset, kind: EventKind, most: int) -> NDArray[np.float64]:
+    """Times of the events of a kind, evenly picked where there are more than `most`."""
     if "event_kind" not in run:
         return np.empty(0)
     total = count(run["event_kind"], kind)
-    wanted = np.linspace(0, total - 1, min(total, _MOST_EVENTS)).astype(int)
+    wanted = np.linspace(0, total - 1, min(total, most)).astype(int)
     parts, passed = [np.empty(0)], 0
     for place, kinds in pieces(run["event_kind"]):
         places = place + np.flatnonzero(kinds == kind)

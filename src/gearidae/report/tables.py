@@ -173,11 +173,16 @@ def parameter_tables(ds: xr.Dataset) -> str:
     swept = json.loads(ds.attrs.get("swept", "{}"))
     drawn = json.loads(ds.attrs.get("ensemble", "{}")).get("distributions", {})
     known = {info.key: info for info in describe_keys()}
+    picked = {
+        key: dim for key, dim in dimension_names(swept).items() if dim in ds.coords and not ds[dim].dims
+    }
     rows = []
     for key, value in _flatten(scene, swept):
         info = known.get(".".join(part for part in key.split(".") if not part.isdecimal()))
         unit, meaning = (info.unit, info.description) if info else ("", "")
         shown = f"swept: {values_text(swept[key], unit)}" if key in swept else value_text(value, unit)
+        if key in picked:
+            shown = f"selected: {value_text(ds[picked[key]].values.item(), unit)}"
         if key in drawn:
             shown = f"drawn from {drawn[key]}: {values_text(swept.get(key, []), unit)}"
         rows.append((key, shown, meaning))

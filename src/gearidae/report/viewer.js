@@ -13,7 +13,12 @@
   const view = { from: 0, to: data.end };
   const hidden = new Set();
   const panels = [];
-  let cursor = null, followed = null, waiting = false, boxing = false;
+  // Runs that are drawn, each in a place of its own, which has a colour and dashes; and since when, the first one longest.
+  const drawn = Array.from({ length: data.most }, (_, place) => (place < data.chosen.length ? data.chosen[place] : null));
+  const since = [...data.chosen];
+  const places = () => [...drawn.keys()].filter((place) => drawn[place] !== null);
+  const seen = () => places().filter((place) => !hidden.has(drawn[place]));
+  let cursor = null, followed = null, waiting = false, boxing = false, near = data.chosen[0]; // near: the map shows its part
 
   function later() {
     if (waiting) return;
@@ -22,8 +27,8 @@
   }
 
   function drawAll() {
-    for (const panel of panels) if (panel.values && !panel.box.hidden) draw(panel);
-    legend.querySelectorAll(".swatch").forEach((swatch, run) => { swatch.style.color = colour(run); });
+    for (const panel of panels) if (!panel.box.hidden) draw(panel);
+    legend.querySelectorAll(".swatch").forEach((swatch) => { swatch.style.color = colour(Number(swatch.dataset.place)); });
     report();
   }
 
@@ -31,15 +36,14 @@
   function rangeOf(panel) {
     if (panel.chosen) return panel.chosen;
     let low = Infinity, high = -Infinity;
-    panel.values.forEach((values, run) => {
-      if (hidden.has(run)) return;
-      const [first, last] = indices(values);
+    for (const place of seen()) {
+      const values = panel.valuesOf(drawn[place]), [first, last] = indices(values);
       for (let i = first; i <= last; i++) {
         const value = values[i];
         if (value < low) low = value;
         if (value > high) high = value;
       }
-    });
+    }
     if (!(low <= high)) return null;
     const margin = 0.05 * (high - low) || 0.05 * Math.abs(high) || 1;
     return [low - margin, high + margin];
@@ -47,8 +51,9 @@
 
   // The liveliest run goes to the back, so that it does not hide the others.
   function byLiveliness(panel) {
-    const spread = panel.values.map((values) => {
-      const [first, last] = indices(values);
+    const spread = drawn.map((run) => {
+      if (run === null) return 0;
+      const values = panel.valuesOf(run), [first, last] = indices(values);
       let low = Infinity, high = -Infinity;
       for (let i = first; i <= last; i++) {
         if (values[i] < low) low = values[i];
@@ -56,7 +61,7 @@
       }
       return high - low;
     });
-    return [...panel.values.keys()].filter((run) => !hidden.has(run)).sort((a, b) => spread[b] - spread[a]);
+    return seen().sort((a, b) => spread[b] - spread[a]);
   }
 
   function indices(values) {
@@ -102,7 +107,7 @@
 
     pen.save();
     pen.beginPath(); pen.rect(LEFT, TOP, inner, tall); pen.clip();
-    for (const run of byLiveliness(panel)) trace(pen, panel.values[run], run, x, y, inner);
+    for (const place of byLiveliness(panel)) trace(pen, panel.valuesOf(drawn[place]), place, x, y, inner);
     contacts(pen, x, TOP + tall);
     if (followed !== null && followed >= view.from && followed <= view.to) {
       pen.setLineDash([4, 3]); pen.lineWidth = 1; pen.strokeStyle = style("--ink");
@@ -116,12 +121,12 @@
   }
 
   // Where there are more values than pixels, each column of pixels shows its extremes: no peak is lost.
-  function trace(pen, values, run, x, y, inner) {
+  function trace(pen, values, place, x, y, inner) {
     const [first, last] = indices(values), step = data.end / (values.length - 1 || 1);
     const perColumn = (last - first + 1) / Math.max(inner, 1);
-    pen.strokeStyle = colour(run);
+    pen.strokeStyle = colour(place);
     pen.lineWidth = 1.4;
-    pen.setLineDash(perColumn > 2 ? [] : DASHES[run % 7]);
+    pen.setLineDash(perColumn > 2 ? [] : DASHES[place % 7]);
     pen.beginPath();
     let open = false;
     const point = (index) => {
@@ -154,9 +159,9 @@
   function contacts(pen, x, foot) {
     pen.setLineDash([]);
     pen.lineWidth = 1;
-    data.runs.forEach((run, number) => {
-      if (hidden.has(number)) return;
-      pen.strokeStyle = colour(number);
+    for (const place of seen()) {
+      const run = data.runs[drawn[place]];
+      pen.strokeStyle = colour(place);
       for (const [times, length] of [[run.onsets, 10], [run.separations, 5]]) {
         pen.beginPath();
         for (const time of times) {
@@ -165,7 +170,7 @@
         }
         pen.stroke();
       }
-    });
+    }
   }
 
   function report() {
@@ -175,15 +180,14 @@
     }
     const parts = ["t = " + seconds(cursor)];
     for (const panel of panels) {
-      if (!panel.values || panel.box.hidden) continue;
-      panel.values.forEach((values, run) => {
-        if (hidden.has(run)) return;
-        const value = values[Math.round(cursor / data.end * (values.length - 1))];
+      if (panel.box.hidden) continue;
+      for (const run of seen().map((place) => drawn[place])) {
+        const values = panel.valuesOf(run), value = values[Math.round(cursor / data.end * (values.length - 1))];
         const scale = panel.unit ? prefixOf(Math.abs(value)) : { factor: 1, prefix: "" };
         const label = data.runs.length > 1 ? " [" + data.runs[run].label + "]" : "";
         const shown = Number.isNaN(value) ? "not reached" : (value * scale.factor).toPrecision(5);
         parts.push(panel.name.replaceAll("_", " ") + label + " " + shown + " " + readable(scale.prefix, panel.unit));
-      });
+      }
     }
     readout.textContent = parts.join("  ·  ");
   }
@@ -279,8 +283,8 @@
   }
 
   function saveTable() {
-    const shown = panels.filter((panel) => panel.values && !panel.box.hidden);
-    gearidae.save(gearidae.tableOf(data, shown, hidden, indices), "csv", "series");
+    const shown = panels.filter((panel) => !panel.box.hidden), chosen = seen().map((place) => drawn[place]);
+    gearidae.save(gearidae.tableOf(data, shown, chosen, indices), "csv", "series");
   }
 
   function savePlot(panel) {
@@ -290,7 +294,6 @@
   function toggle(panel, wanted) {
     panel.box.hidden = !wanted;
     panel.button.setAttribute("aria-pressed", String(wanted));
-    if (wanted && !panel.values) panel.values = panel.packed.map(decode); // unpacked when first looked at
     later();
   }
 
@@ -307,35 +310,82 @@
   boxButton.setAttribute("aria-pressed", "false");
   boxButton.addEventListener("click", () => chooseBoxes(!boxing));
   gearidae.saveButtons(controls, [["CSV", "download the shown plots as a table", saveTable]]);
-  // A piece of a run's line, with its dashes.
-  function swatchOf(parent, dashes) {
+  // A piece of the line of a run, with its dashes.
+  function swatchOf(parent, place) {
     const name = "http://www.w3.org/2000/svg", svg = document.createElementNS(name, "svg"), line = document.createElementNS(name, "path");
     svg.setAttribute("class", "swatch");
     svg.setAttribute("viewBox", "0 0 32 4");
     line.setAttribute("d", "M0 2H32");
-    line.setAttribute("stroke-dasharray", dashes.join(" "));
+    line.setAttribute("stroke-dasharray", DASHES[place % 7].join(" "));
+    svg.dataset.place = place;
     svg.append(line);
     parent.append(svg);
   }
 
   const legend = element("div", holder, "", { className: "controls" });
-  data.runs.forEach((run, number) => {
-    if (data.runs.length < 2) return;
-    const button = element("button", legend, "", { type: "button" });
-    swatchOf(button, DASHES[number % 7]);
-    button.append(run.label);
-    button.setAttribute("aria-pressed", "true");
-    button.addEventListener("click", () => {
-      if (!hidden.delete(number)) hidden.add(number);
+  function writeLegend() {
+    legend.replaceChildren();
+    for (const place of data.runs.length < 2 ? [] : places()) {
+      const number = drawn[place], button = element("button", legend, "", { type: "button" });
+      swatchOf(button, place);
+      button.append(data.runs[number].label);
       button.setAttribute("aria-pressed", String(!hidden.has(number)));
-      later();
+      button.addEventListener("click", () => {
+        if (!hidden.delete(number)) hidden.add(number);
+        button.setAttribute("aria-pressed", String(!hidden.has(number)));
+        later();
+      });
+    }
+  }
+
+  // Takes a run up or out; where all places are taken, it gets that of the run which is there longest. One stays.
+  function choose(number) {
+    near = number;
+    const place = drawn.indexOf(number), free = drawn.indexOf(null);
+    if (place < 0) {
+      drawn[free < 0 ? drawn.indexOf(since.shift()) : free] = number;
+      since.push(number);
+    } else if (since.length > 1) {
+      drawn[place] = null;
+      since.splice(since.indexOf(number), 1);
+      hidden.delete(number);
+    }
+    writeLegend();
+    showChoice();
+    later();
+  }
+  const showChoice = () => {
+    if (showMap) showMap(near, since, (number) => (drawn.includes(number) ? colour(drawn.indexOf(number)) : ""));
+  };
+  const choice = document.getElementById("choice");
+  // Of more than two dimensions the map shows a part: a list for each of the others chooses which.
+  const others = choice ? data.outcomes.dims.slice(0, -2) : [];
+  const lists = others.map((dim, k) => {
+    const label = element("label", choice, dim.name + " "), list = element("select", label);
+    dim.values.forEach((value, place) => element("option", list, value, { value: place }));
+    list.addEventListener("change", () => {
+      near = gearidae.runAt(data.outcomes, gearidae.placesOf(data.outcomes, near).map((at, i) => (i === k ? Number(list.value) : at)));
+      showChoice();
     });
+    return list;
   });
+  const showMap = choice ? gearidae.outcomeMap(choice, data.outcomes, choose) : null;
+  gearidae.placesOf(data.outcomes, near).slice(0, lists.length).forEach((place, k) => { lists[k].value = place; });
+  if (data.runs.length > data.most) {
+    element("p", choice, "All " + data.runs.length + " runs are in the page, " + data.most + " are drawn at a time: choose them on the map. Another one takes the place of the one that was chosen first; a second click takes a run out.", { className: "hint" });
+  }
+  writeLegend();
+  showChoice();
   const readout = element("output", holder);
   const quantities = element("div", holder, "", { className: "controls" });
   for (const series of data.series) {
     const box = element("div", holder, "", { className: "plot" });
-    const panel = { box, name: series.name, label: series.label, unit: series.unit, packed: series.runs };
+    const panel = { box, name: series.name, label: series.label, unit: series.unit };
+    const unpacked = new Map(); // when first looked at
+    panel.valuesOf = (run) => {
+      if (!unpacked.has(run)) unpacked.set(run, decode(series.runs[run]));
+      return unpacked.get(run);
+    };
     panel.title = element("h3", box, series.label);
     panel.canvas = element("canvas", box, "", { tabIndex: 0 });
     panel.canvas.setAttribute("role", "img");
@@ -349,13 +399,12 @@
     toggle(panel, series.shown);
   }
   const notes = [];
-  if (data.of > data.runs.length) notes.push(data.runs.length + " of " + data.of + " runs are shown: the first, the last, and those at which the outcome changes.");
   if (data.reduced > 1) notes.push("Of every " + data.reduced + " samples the page holds the smallest and the largest.");
   notes.push("Marks at the foot: contacts made (long) and broken (short).");
   element("p", holder, notes.join(" "), { className: "hint" });
 
   // The time at which the teeth are shown.
   document.addEventListener("gearidae:teeth", (event) => { followed = event.detail; later(); });
-  whenSeenAnew(drawAll, later);
+  whenSeenAnew(() => { showChoice(); drawAll(); }, later);
   drawAll();
 })();
