@@ -29,7 +29,7 @@ from gearidae.report.tables import (
     outcome_table,
     summary_tables,
 )
-from gearidae.report.teeth import MOST_STATES, pack_runs, runs_with_teeth, time_to_repeat
+from gearidae.report.teeth import pack_runs, runs_with_teeth, time_to_repeat
 from gearidae.studies.declared import studies
 from gearidae.studies.products import answer, kind_of
 
@@ -168,7 +168,7 @@ def _teeth(ds: xr.Dataset, wanted: bool | None) -> str:
         again = f"run again, which takes about {in_words(seconds)}: gearidae report --teeth (teeth=True)"
         return html.paragraph(f"Not shown. For the teeth in mesh the scene must {again}.")
     try:
-        data = pack_runs(shown, _STATES_OF_MANY if many else MOST_STATES)
+        data = pack_runs(shown, _STATES_OF_MANY) if many else pack_runs(shown)
     except SceneError as error:
         return html.paragraph(f"Not shown. {error}")
     which = f"{number_shown(shown)}: the first, the last, and those at which the outcome changes."
