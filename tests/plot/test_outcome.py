@@ -60,13 +60,20 @@ def test_fields_over_two_keys_need_no_samples(grid):
     assert ax.get_ylabel() == "SAM (%)"
     assert [label.get_text() for label in ax.get_yticklabels()] == ["34", "42", "100"]
     assert [label.get_text() for label in ax.get_xticklabels()] == ["3", "4.5"]
-    shown = {}
+    shown, edges = {}, set()
     names = [text.get_text() for text in ax.get_legend().get_texts()]
     fields = [artist for artist in ax.collections if isinstance(artist, PolyCollection)]
     for name, field in zip(names, fields, strict=True):
         for path in field.get_paths():
-            x, y = path.vertices[:4].mean(axis=0)
-            shown[[34, 42, 100][round(y)], [3e-18, 4.5e-18][round(x)]] = name
+            left, bottom = path.vertices[:4].min(axis=0)
+            right, top = path.vertices[:4].max(axis=0)
+            (percent,) = (value for value in (34, 42, 100) if bottom < value < top)
+            (torque,) = (value for value in (3.0, 4.5) if left < value < right)
+            shown[percent, torque * 1e-18] = name
+            edges |= {bottom, top}
+    # limits lie in the middle between two values, whatever their distance
+    assert sorted(edges) == pytest.approx([30.0, 38.0, 71.0, 129.0])
+    assert ax.get_ylim() == pytest.approx((30.0, 100.0))
     assert len({artist.get_hatch() for artist in fields}) == len(fields)  # told apart without colours
     for judgement in gd.outcomes(grid):
         assert (

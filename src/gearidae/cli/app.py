@@ -152,6 +152,14 @@ def plot(
     frames: Annotated[
         int | None, Parameter(help="Number of frames of the moving picture. Default: 100.")
     ] = None,
+    size: Annotated[
+        str | None, Parameter(help="Width and height: '3.4 in, 2.4 in' or '86 mm, 60 mm'.")
+    ] = None,
+    dpi: Annotated[float | None, Parameter(help="Dots per inch. Default: 200.")] = None,
+    style: Annotated[
+        str | None,
+        Parameter(help="Style: journal, one of matplotlib's (ggplot), or a file with its settings."),
+    ] = None,
     output: Output = None,
     overwrite: Overwrite = False,
 ) -> int:
@@ -170,6 +178,9 @@ def plot(
         time=time,
         span=(start, stop),
         frames=frames,
+        size=size,
+        dpi=dpi,
+        style=style,
         overwrite=overwrite,
     )
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+import matplotlib as mpl
 from matplotlib.figure import Figure
 
 import gearidae as gd
@@ -20,7 +21,9 @@ from gearidae.scene.group import did_you_mean
 from gearidae.scene.pairs import quantity
 from gearidae.studies.products import open_product
 
-_NO_PICTURES = ("animate_teeth", "tooth_outline", "write")
+_NO_PICTURES = ("animate_teeth", "style", "tooth_outline", "write")
+_INCH = 0.0254
+_DPI_OF_FRAMES = 100.0
 
 
 def picture_names() -> list[str]:
@@ -38,6 +41,9 @@ def draw(
     time: str | None,
     span: tuple[str | None, str | None],
     frames: int | None,
+    size: str | None,
+    dpi: float | None,
+    style: str | None,
     overwrite: bool,
 ) -> int:
     """Draw an archive, or another file of the commands, into an image file.
@@ -59,6 +65,12 @@ def draw(
         First and last time of a moving picture.
     frames : int or None
         Its number of pictures.
+    size : str or None
+        Width and height with their unit.
+    dpi : float or None
+        Dots per inch.
+    style : str or None
+        As for `gearidae.plot.style`.
     overwrite : bool
         Whether the image may replace a file.
 
@@ -83,6 +95,13 @@ def draw(
     options = {option: str(value) for option, value in asked.items() if value is not None}
     if options and picture != "teeth":
         raise SceneError(*next(iter(options.items())), "needs --picture teeth")
+    if dpi is not None and not 10.0 <= dpi <= 2400.0:
+        raise SceneError("--dpi", dpi, "must lie in 10..2400")
+    if style is not None:
+        gd.plot.style(style)
+    inches = None if size is None else _inches(size)
+    if inches is not None:
+        mpl.rcParams["figure.figsize"] = inches
     moves = bool(options.keys() - {"--time"})
     ds, kind = open_product(archive)
     usual = next(iter(usual_pictures(ds, kind)))
@@ -100,6 +119,7 @@ def draw(
             stop=None if stop is None else quantity("--to", stop, "s"),
             frames=100 if frames is None else frames,
             overwrite=overwrite,
+            dpi=_DPI_OF_FRAMES if dpi is None else dpi,
         )
     else:
         target = output or default_output(str(archive), ".png")
@@ -107,9 +127,25 @@ def draw(
         drawn = getattr(gd.plot, picture or usual)(ds, **at)
         figure = drawn if isinstance(drawn, Figure) else drawn.get_figure(root=True)
         assert figure is not None
-        gd.plot.write(figure, target, overwrite=overwrite)
+        if inches is not None:
+            figure.set_size_inches(inches)
+        gd.plot.write(figure, target, overwrite=overwrite, dpi=dpi)
     print_line(f"Picture: {target}")
     return DONE
+
+
+def _inches(text: str) -> tuple[float, float]:
+    """Read a width and a height, in inches or in a unit of length."""
+    parts = [part.strip() for part in text.split(",")]
+    if len(parts) != 2:
+        raise SceneError("--size", text, "must be a width and a height, such as 3.4 in, 2.4 in")
+    lengths = [
+        _INCH * quantity("--size", part[:-2], "1") if part.endswith("in") else quantity("--size", part, "m")
+        for part in parts
+    ]
+    if not all(0.5 * _INCH <= length <= 50.0 * _INCH for length in lengths):
+        raise SceneError("--size", text, "must lie in 0.5..50 inches (in, mm, cm)")
+    return lengths[0] / _INCH, lengths[1] / _INCH
 
 
 def _is_moving(path: Path) -> bool:

@@ -6,8 +6,8 @@ nothing at all. These two say how they look, by the method that Jupyter asks obj
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager
 from io import BytesIO
 from typing import Any
 
@@ -47,14 +47,47 @@ def usual_style() -> Iterator[None]:
         yield
 
 
-def new_picture(size: tuple[float, float], **options: Any) -> Picture:
+def new_picture(size: tuple[float, float], *, panels: bool = False, **options: Any) -> Picture:
     """Make an empty figure.
 
     Parameters
     ----------
     size : tuple of float
-        Width and height [inches].
+        Width and height [inches], unless ``figure.figsize`` of matplotlib's settings is not the usual one.
+    panels : bool, optional
+        Whether several panels lie below each other: their figure takes the width of the settings and keeps its shape.
     **options
         As for `matplotlib.figure.Figure`.
     """
-    return Picture(figsize=size, dpi=150, **options)
+    settings: Any = mpl.rcParams
+    width, height = settings["figure.figsize"]
+    if is_set("figure.figsize"):
+        size = (width, width * size[1] / size[0]) if panels else (width, height)
+    dpi = float(settings["figure.dpi"]) if is_set("figure.dpi") else 150.0
+    return Picture(figsize=size, dpi=dpi, **options)
+
+
+def is_set(name: str) -> bool:
+    """Whether a setting of matplotlib is another than the usual one."""
+    settings: Any = mpl.rcParams
+    usual: Any = mpl.rcParamsDefault
+    return bool(settings[name] != usual[name])
+
+
+class Settings(AbstractContextManager[None]):
+    """Settings of matplotlib that hold from now on, or until the end of a ``with`` block.
+
+    Parameters
+    ----------
+    changes : dict
+        Keys of `matplotlib.rcParams` and values.
+    """
+
+    def __init__(self, changes: Mapping[str, Any]) -> None:
+        settings: Any = mpl.rcParams
+        self._before = {name: settings[name] for name in changes}
+        settings.update(changes)
+
+    def __exit__(self, *_: object) -> None:
+        settings: Any = mpl.rcParams
+        settings.update(self._before)

@@ -11,9 +11,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import matplotlib as mpl
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.ticker import FuncFormatter
 from numpy.typing import NDArray
 
 from gearidae.analysis.verdict import START_UP, outcomes
@@ -22,7 +25,7 @@ from gearidae.archive.pieces import PIECE, Spread, pieces, reached, spread
 from gearidae.archive.select import run_value, runs, scene_of
 from gearidae.arrays import Floats
 from gearidae.drawing.picking import pick
-from gearidae.drawing.picture import PictureAxes, new_picture
+from gearidae.drawing.picture import PictureAxes, is_set, new_picture
 from gearidae.errors import SceneError
 from gearidae.scene.prefixes import PREFIXES, with_prefix
 
@@ -49,8 +52,10 @@ _AT_END = ("finished", "stopped")
 """Status of runs that have come to their end."""
 _MOST_POINTS = 6000
 _LONGEST_LABEL = 32
+_WIDTH = 7.2
+"""Of a picture [inches]."""
 _IN_A_LINE = 84
-"""Characters of a legend that a line of a picture takes."""
+"""Characters of a legend that a line of such a picture takes, at the usual size of letters."""
 _HANDLE = 8
 """Those that the line in front of a name takes, with the space beside it."""
 
@@ -85,10 +90,12 @@ class Run:
         return thin(self.data["time"], self.data[name], reached(self.data[name]))
 
     def settled(self, name: str) -> Spread:
-        """Return how the samples [SI] are spread, without those of the start-up; where that is the input, with them."""
+        """Return how the samples [SI] are spread, without those of the start-up unless a schedule or law shapes it."""
         values = self.data[name]
         end = reached(values)
-        left_out = 0.0 if is_scheduled(scene_of(self.data)) else START_UP
+        scene = scene_of(self.data)
+        by_law = any((scene.get(shaft) or {}).get("law") for shaft in ("drive", "load"))
+        left_out = 0.0 if by_law or is_scheduled(scene) else START_UP
         return spread(values, int(left_out * end), end)
 
 
@@ -131,9 +138,7 @@ def runs_of(ds: xr.Dataset, name: str) -> list[Run]:
     if not chosen:
         raise SceneError("plot", name, "the dataset has no samples of it")
     return [
-        Run(
-            label, run, COLOURS[place % len(COLOURS)], LINE_STYLES[place % len(LINE_STYLES)], drawable, number
-        )
+        Run(label, run, line_colour(place), line_style(place), drawable, number)
         for place, (label, number, (_, run)) in enumerate(zip(run_labels(chosen), kept, chosen, strict=True))
     ]
 
@@ -143,6 +148,27 @@ def run_labels(chosen: Sequence[tuple[Mapping[str, Any], xr.Dataset]]) -> list[s
     labels = [_label(label, run) for label, run in chosen]
     short = [_shortened(label) for label in labels]
     return short if len(set(short)) == len(set(labels)) else labels
+
+
+def line_colour(number: int) -> str:
+    """Colour of a line, by its number: of the user's cycle (``axes.prop_cycle``) where that is not the usual one."""
+    colours = _cycle().get("color", COLOURS)
+    return str(colours[number % len(colours)])
+
+
+def line_style(number: int) -> Any:
+    """Dashes of a line, by its number, as `line_colour`."""
+    styles = _cycle().get("linestyle", LINE_STYLES)
+    return styles[number % len(styles)]
+
+
+def line_width(width: float) -> float:
+    """Width of a line [points] that has `width` at matplotlib's usual ``lines.linewidth``."""
+    return width * float(mpl.rcParams["lines.linewidth"]) / float(mpl.rcParamsDefault["lines.linewidth"])
+
+
+def _cycle() -> dict[str, list[Any]]:
+    return mpl.rcParams["axes.prop_cycle"].by_key() if is_set("axes.prop_cycle") else {}
 
 
 def scale_for(largest: float, unit: str) -> Scale:
@@ -219,7 +245,7 @@ def new_axes(ax: Axes | None, *, height: float = 3.2) -> Axes:
     """Return the axes to draw into: the given ones, or those of a new figure of its own."""
     if ax is not None:
         return ax
-    return new_picture((7.2, height), layout="constrained").add_subplot(axes_class=PictureAxes)
+    return new_picture((_WIDTH, height), layout="constrained").add_subplot(axes_class=PictureAxes)
 
 
 def tidy(ax: Axes) -> None:
@@ -228,6 +254,41 @@ def tidy(ax: Axes) -> None:
     ax.grid(visible=True, color="0.9", linewidth=0.6)
     ax.set_axisbelow(True)
     ax.margins(x=0)
+
+
+def label_axis(axis: Axis, words: str, unit: str, *, minor: bool = False) -> None:
+    """Label an axis of values in SI with one prefix for all of it, which stands in its label once.
+
+    Parameters
+    ----------
+    axis : matplotlib Axis
+        With its limits.
+    words : str
+        What it shows.
+    unit : str
+        Without prefix.
+    minor : bool, optional
+        Whether to write numbers at minor ticks too.
+    """
+    scale = scaled(max(map(abs, axis.get_view_interval())), unit)
+    numbers = FuncFormatter(lambda value, _: f"{value * scale.factor:.6g}")
+    axis.set_major_formatter(numbers)
+    if minor:
+        axis.set_minor_formatter(numbers)
+    axis.set_label_text(f"{words} ({scale.unit})")
+
+
+def characters(ax: Axes) -> int:
+    """Characters of small text that fit into a line of a figure."""
+    figure = ax.get_figure(root=True)
+    assert figure is not None
+    return int(_IN_A_LINE * figure.get_figwidth() / _WIDTH * 10.0 / float(mpl.rcParams["font.size"]))
+
+
+def legend_columns(ax: Axes, labels: Sequence[str]) -> int:
+    """Columns of a legend above the axes: four at most, as many as there is room for."""
+    width = max(map(len, labels)) + _HANDLE
+    return min(len(labels), 4, max(characters(ax) // width, 1))
 
 
 def label_time(ax: Axes, runs: Sequence[Run]) -> Scale:
@@ -267,13 +328,12 @@ def legend(ax: Axes, runs: Sequence[Run]) -> None:
     if len(runs) < 2:
         return
     handles = dict(zip(*reversed(ax.get_legend_handles_labels()), strict=True))
-    width = max(len(run.label) for run in runs) + _HANDLE
     shown = ax.legend(
         [handles[run.label] for run in runs],
         [run.label for run in runs],
         loc="lower left",
         bbox_to_anchor=(0.0, 1.0),
-        ncols=min(len(runs), 4, max(_IN_A_LINE // width, 1)),
+        ncols=legend_columns(ax, [run.label for run in runs]),
         title=number_shown(runs) or None,
         title_fontsize="small",
         alignment="left",
@@ -284,7 +344,7 @@ def legend(ax: Axes, runs: Sequence[Run]) -> None:
         fontsize="small",
     )
     for handle in shown.get_lines():
-        handle.set_linewidth(2.0)
+        handle.set_linewidth(line_width(2.0))
 
 
 def _has_samples(values: xr.DataArray) -> bool:

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
+from matplotlib.figure import Figure
 
 from gearidae.errors import SceneError
 from gearidae.plot.files import BY_FFMPEG, MOVING, whole_file
@@ -69,6 +70,7 @@ def animate_teeth(
             raise SceneError("stop", last, f"must come after the start, {start:g} s")
         states = mesh_states(ds, np.linspace(start, last, frames))
         view = TeethView(ds, states)
+        assert isinstance(view.figure, Figure)
         with writer.saving(view.figure, str(part), dpi):
             for state in states:
                 view.draw(state)

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.ticker import EngFormatter
 
 from gearidae.analysis.map_model import require_map
-from gearidae.drawing.style import COLOURS, LINE_STYLES, new_axes, scale_for, tidy
+from gearidae.drawing.style import label_axis, line_colour, line_style, line_width, new_axes, scale_for, tidy
 
 if TYPE_CHECKING:
     from gearidae.analysis.assessment import Assessment
@@ -47,10 +46,10 @@ def coating_map(chart: xr.Dataset, ax: Axes | None = None, *, assessment: Assess
     for number in range(lines.sizes["line"]):
         line = lines.isel(line=number)
         frequency, spread = line["characteristic_frequency"].values, line["uncertainty"].values
-        colour = COLOURS[number % len(COLOURS)]
+        colour = line_colour(number)
         if not further:
             for later in line["impact_frequency"].transpose("impact", ...).values[1:]:
-                ax.plot(percent, later, color=_LATER, linewidth=0.8, zorder=1)
+                ax.plot(percent, later, color=_LATER, linewidth=line_width(0.8), zorder=1)
         ax.fill_between(
             percent, frequency - spread, frequency + spread, color=colour, alpha=0.25, linewidth=0
         )
@@ -59,24 +58,22 @@ def coating_map(chart: xr.Dataset, ax: Axes | None = None, *, assessment: Assess
             percent,
             frequency,
             color=colour,
-            linestyle=LINE_STYLES[number % len(LINE_STYLES)],
-            linewidth=1.4,
+            linestyle=line_style(number),
+            linewidth=line_width(1.4),
             marker=".",
             markersize=4,
             label=label or "first impact",
         )
     if not further and chart.sizes["impact"] > 1:
-        ax.plot([], [], color=_LATER, linewidth=0.8, label="later impacts")
+        ax.plot([], [], color=_LATER, linewidth=line_width(0.8), label="later impacts")
     if assessment is not None and np.isfinite(assessment.low):
         ax.axvspan(
             100.0 * assessment.low, 100.0 * assessment.high, color="#E69F00", alpha=0.3, label="assessed"
         )
     ax.set_yscale("log")
-    ax.yaxis.set_major_formatter(EngFormatter("Hz"))
-    ax.yaxis.set_minor_formatter(EngFormatter("Hz"))
+    label_axis(ax.yaxis, "frequency of the impact response", "Hz", minor=True)
     ax.tick_params(axis="y", which="minor", labelsize="x-small")
     ax.set_xlabel("SAM (%)")
-    ax.set_ylabel("frequency of the impact response")
     tidy(ax)
     ax.legend(frameon=False, fontsize="small")
     return ax

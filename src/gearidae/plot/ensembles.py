@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
+from gearidae.analysis.verdict import outcomes
+from gearidae.analysis.verdict.codes import STUCK
 from gearidae.archive.specimen import SEED
+from gearidae.arrays import Floats
 from gearidae.drawing.parameter_axis import parameter_axis
-from gearidae.drawing.style import NEGATIVE, POSITIVE, new_axes, tidy
+from gearidae.drawing.style import NEGATIVE, POSITIVE, legend_columns, line_width, new_axes, tidy
 from gearidae.errors import SceneError
+from gearidae.plot.outcome import look_of
 from gearidae.studies._sticking_probability import drawn_keys
 from gearidae.studies._sticking_probability import sticking_probability as probability_of
 
@@ -21,7 +26,7 @@ _COVERAGE = "coating.sam_fraction"
 def sticking_probability(
     ds: xr.Dataset, ax: Axes | None = None, *, over: str | None = None, bins: int | None = None
 ) -> Axes:
-    """Draw the probability of sticking against one of the keys that were drawn, with its 95 % band.
+    """Draw what each member of an ensemble did, and the probability of sticking against one of the keys drawn.
 
     Parameters
     ----------
@@ -37,6 +42,8 @@ def sticking_probability(
     Returns
     -------
     Axes
+        With the 95 % band, and a mark for the verdict of each member: above the curve of those that stick, below it of
+        the others.
 
     Raises
     ------
@@ -47,27 +54,54 @@ def sticking_probability(
     over = over or next((key for key in (_COVERAGE, *names) if key in names and key != SEED), SEED)
     estimate = probability_of(ds, over, bins=bins)
     name = names[over]
-    along = parameter_axis(estimate[name])
+    along = parameter_axis(ds[name])
+    at = estimate[name].values * along.factor
     ax = new_axes(ax, height=3.8)
     look: dict[str, Any] = {"color": POSITIVE, "alpha": 0.25, "label": "95 % band"}
-    if len(along.places) > 1:
-        ax.fill_between(along.places, estimate["low"], estimate["high"], linewidth=0, **look)
+    if len(at) > 1:
+        ax.fill_between(at, estimate["low"], estimate["high"], linewidth=0, **look)
     else:  # a band would have no width
-        ax.vlines(along.places, estimate["low"], estimate["high"], linewidth=6, **look)
+        ax.vlines(at, estimate["low"], estimate["high"], linewidth=6, **look)
     ax.plot(
-        along.places,
+        at,
         estimate["probability"],
         color=POSITIVE,
         marker=".",
-        linewidth=1.4,
+        linewidth=line_width(1.4),
         label="members that stick",
     )
-    ax.set_ylim(-0.02, 1.02)
+    _mark_members(ax, along.places, [outcome.verdict for outcome in outcomes(ds)])
+    ax.set_ylim(-0.12, 1.12)
+    ax.set_yticks(np.linspace(0.0, 1.0, 6))
     ax.set_xlabel(along.label)
     ax.set_ylabel("probability of sticking")
     tidy(ax)
-    ax.legend(frameon=False, fontsize="small")
+    ax.margins(x=0.03)
+    labels = ax.get_legend_handles_labels()[1]
+    ax.legend(
+        loc="lower left",
+        bbox_to_anchor=(0.0, 1.0),
+        ncols=legend_columns(ax, labels),
+        frameon=False,
+        fontsize="small",
+    )
     return ax
+
+
+def _mark_members(ax: Axes, places: Floats, verdicts: Sequence[str]) -> None:
+    """Mark what each member did, with a line of marks for those that stick and one for the others."""
+    for verdict in dict.fromkeys(verdicts):
+        chosen = np.array([other == verdict for other in verdicts])
+        look = look_of(verdict)
+        ax.plot(
+            places[chosen],
+            np.full(chosen.sum(), 1.06 if verdict in STUCK else -0.06),
+            look.marker,
+            color=look.colour,
+            markersize=5,
+            alpha=0.7,
+            label=f"{verdict} ({chosen.sum()})",
+        )
 
 
 def specimens(ds: xr.Dataset, ax: Axes | None = None, *, of: str | None = None) -> Axes:
@@ -100,9 +134,17 @@ def specimens(ds: xr.Dataset, ax: Axes | None = None, *, of: str | None = None) 
         raise SceneError("plot", "specimens", f"no member has a {of}")
     ax = new_axes(ax, height=3.8)
     share = np.arange(1, values.size + 1) / values.size
-    ax.step(values, share, where="post", color=POSITIVE, marker=".", linewidth=1.2, label="one gear each")
+    ax.step(
+        values,
+        share,
+        where="post",
+        color=POSITIVE,
+        marker=".",
+        linewidth=line_width(1.2),
+        label="one gear each",
+    )
     mean = float(values.mean())
-    ax.axvline(mean, color="0.3", linewidth=0.8, linestyle=":", label="mean")
+    ax.axvline(mean, color="0.3", linewidth=line_width(0.8), linestyle=":", label="mean")
     if values.size > 1:
         error = float(values.std(ddof=1)) / np.sqrt(values.size)
         ax.axvspan(mean - error, mean + error, color="0.3", alpha=0.2, linewidth=0, label="standard error")
@@ -156,7 +198,7 @@ def sobol_indices(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
             label=label,
         )
     ax.set_yticks(np.arange(len(keys)), keys)
-    ax.axvline(0.0, color="0.3", linewidth=0.8)
+    ax.axvline(0.0, color="0.3", linewidth=line_width(0.8))
     ax.set_xlabel(f"share of the variance of {ds.attrs['index_of']}")
     tidy(ax)
     ax.margins(x=0.05)

@@ -7,11 +7,14 @@ from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from matplotlib.figure import Figure
+import matplotlib as mpl
+from matplotlib.figure import Figure, SubFigure
 
 from gearidae.archive import target
+from gearidae.drawing.picture import is_set
 from gearidae.errors import SceneError
 
+_DPI = 200.0
 BY_FFMPEG = ("mp4", "webm")
 """Endings of moving pictures that need ffmpeg."""
 MOVING = ("gif", "webp", *BY_FFMPEG)
@@ -19,20 +22,24 @@ MOVING = ("gif", "webp", *BY_FFMPEG)
 
 
 def write(
-    figure: Figure, path: str | os.PathLike[str], *, overwrite: bool = False, dpi: float = 200.0
+    figure: Figure | SubFigure,
+    path: str | os.PathLike[str],
+    *,
+    overwrite: bool = False,
+    dpi: float | None = None,
 ) -> Path:
     """Write a figure to a file.
 
     Parameters
     ----------
-    figure : matplotlib Figure
+    figure : matplotlib Figure or SubFigure
         From one of the functions of `gearidae.plot` (``ax.figure`` for those that return axes).
     path : path-like
         File to write; its extension determines the format (png, pdf, svg and whatever else matplotlib knows).
     overwrite : bool, optional
         Whether a file that is there may be replaced.
     dpi : float, optional
-        Dots per inch of formats that have dots.
+        Dots per inch of formats that have dots; by default ``savefig.dpi`` of matplotlib's settings, or 200.
 
     Returns
     -------
@@ -44,8 +51,13 @@ def write(
     SceneError
         If the file exists and may not be replaced, the format is not known, or it cannot be written.
     """
-    with whole_file(path, figure.canvas.get_supported_filetypes(), overwrite=overwrite) as part:
-        figure.savefig(part, format=_kind(part), dpi=dpi)
+    root = figure.get_figure(root=True)
+    assert root is not None
+    with whole_file(path, root.canvas.get_supported_filetypes(), overwrite=overwrite) as part:
+        if dpi is None:
+            dpi = float(mpl.rcParams["savefig.dpi"]) if is_set("savefig.dpi") else _DPI
+        with mpl.rc_context({"svg.fonttype": "none"}):  # text stays text
+            root.savefig(part, format=_kind(part), dpi=dpi)
     return Path(path)
 
 

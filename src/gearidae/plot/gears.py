@@ -9,7 +9,17 @@ from matplotlib.axes import Axes
 
 from gearidae.analysis.verdict.table import standstill_rows
 from gearidae.archive.variables import STANDSTILL_LIST
-from gearidae.drawing.style import Run, label_time, largest, legend, new_axes, runs_of, scale_for, tidy
+from gearidae.drawing.style import (
+    Run,
+    label_time,
+    largest,
+    legend,
+    line_width,
+    new_axes,
+    runs_of,
+    scale_for,
+    tidy,
+)
 from gearidae.plot.outcome import look_of
 
 
@@ -42,7 +52,7 @@ def gear_speed(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     ax.set_ylabel("gear speed (rad/s)")
     low, high = ax.get_ylim()
     if low < 0.0 < high:
-        ax.axhline(0.0, color="0.3", linewidth=0.8, zorder=1)
+        ax.axhline(0.0, color="0.3", linewidth=line_width(0.8), zorder=1)
     return ax
 
 
@@ -113,7 +123,7 @@ def _overlay(ax: Axes, runs: list[Run], name: str, factor: float) -> None:
             values * factor,
             color=run.colour,
             linestyle=run.line,
-            linewidth=1.0,
+            linewidth=line_width(1.0),
             label=run.label,
         )
     tidy(ax)

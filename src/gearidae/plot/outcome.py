@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from gearidae.analysis.verdict import GearOutcome, RollerOutcome, outcomes
 from gearidae.archive.select import swept_dims
-from gearidae.drawing.parameter_axis import ParameterAxis, parameter_axis
-from gearidae.drawing.style import new_axes, scale_for, scaled, tidy
+from gearidae.drawing.parameter_axis import ParameterAxis, cell_edges, parameter_axis, scale_axis
+from gearidae.drawing.style import legend_columns, line_width, new_axes, scale_for, scaled, tidy
 from gearidae.errors import SceneError
 
 
@@ -44,7 +44,6 @@ _LOOKS = {
     "flies": Look("#56B4E9", "^", ".."),
 }
 _UNKNOWN = Look("#999999", "P", "oo")
-_MOST_NAMES = 12
 
 
 def outcome(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
@@ -52,7 +51,7 @@ def outcome(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
 
     Over one parameter, a bar for each run reaches from the lowest to the highest speed of the gear (of a roller: from
     the largest pull to the largest push), with the verdict as a mark at its lower end; dotted lines stand where the
-    verdict changes. Over two parameters, the verdict fills a field for each run.
+    verdict changes. Over two parameters, the verdict fills a field for each run, to scale on both axes.
 
     Parameters
     ----------
@@ -98,7 +97,7 @@ def _bars(ax: Axes, along: ParameterAxis, judged: Sequence[GearOutcome | RollerO
     largest = float(np.nanmax(np.abs([*lows, *highs, 0.0])))
     scale = scale_for(largest, unit) if unit == "N" else scaled(largest, unit)
     lows, highs = lows * scale.factor, highs * scale.factor
-    ax.vlines(along.places, lows, highs, color="0.6", linewidth=1.6, zorder=2)
+    ax.vlines(along.places, lows, highs, color="0.6", linewidth=line_width(1.6), zorder=2)
     for verdict in dict.fromkeys(result.verdict for result in judged):
         chosen = np.array([result.verdict == verdict for result in judged])
         look = look_of(verdict)
@@ -115,8 +114,8 @@ def _bars(ax: Axes, along: ParameterAxis, judged: Sequence[GearOutcome | RollerO
     for left, right in pairwise(order):
         if judged[left].verdict != judged[right].verdict:
             middle = 0.5 * (along.places[left] + along.places[right])
-            ax.axvline(middle, color="0.3", linestyle=":", linewidth=1.0, zorder=1)
-    ax.axhline(0.0, color="0.3", linewidth=0.8, zorder=1)
+            ax.axvline(middle, color="0.3", linestyle=":", linewidth=line_width(1.0), zorder=1)
+    ax.axhline(0.0, color="0.3", linewidth=line_width(0.8), zorder=1)
     tidy(ax)
     ax.margins(x=0.03)
     ax.set_xlabel(along.label)
@@ -140,14 +139,18 @@ def _extents(
 
 
 def _fields(ax: Axes, down: ParameterAxis, across: ParameterAxis, verdicts: NDArray[np.object_]) -> None:
-    """One field a run, all of a size however the values are spaced: each run is to be seen."""
+    """One field a run, from the middle between its values and their neighbours to the next: limits keep their shape."""
     grid = verdicts.reshape(len(down.places), len(across.places))
     rows, columns = np.argsort(down.places, kind="stable"), np.argsort(across.places, kind="stable")
     grid = grid[np.ix_(rows, columns)]
+    up, right = cell_edges(down), cell_edges(across)
     shown = list(dict.fromkeys(verdicts.tolist()))
     for verdict in shown:
         look = look_of(verdict)
-        corners = [_square(row, column) for row, column in np.argwhere(grid == verdict)]
+        corners = [
+            _corners(up[row : row + 2], right[column : column + 2])
+            for row, column in np.argwhere(grid == verdict)
+        ]
         fields = PolyCollection(corners, facecolors=look.colour, edgecolors="white", linewidths=0.6)
         fields.set_hatch(look.hatch)
         ax.add_collection(fields, autolim=False)
@@ -155,24 +158,16 @@ def _fields(ax: Axes, down: ParameterAxis, across: ParameterAxis, verdicts: NDAr
         Patch(facecolor=look_of(word).colour, hatch=look_of(word).hatch, edgecolor="white", linewidth=0.0)
         for word in shown
     ]
-    ax.set_xlim(-0.5, len(columns) - 0.5)
-    ax.set_ylim(-0.5, len(rows) - 0.5)
-    _label_fields(ax, "x", across, columns)
-    _label_fields(ax, "y", down, rows)
+    scale_axis(ax, "x", across)
+    scale_axis(ax, "y", down)
     ax.spines[["top", "right"]].set_visible(False)
     _legend(ax, handles, shown)
 
 
-def _square(row: int, column: int) -> list[tuple[float, float]]:
-    return [(column + x, row + y) for x, y in ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))]
-
-
-def _label_fields(ax: Axes, which: str, along: ParameterAxis, order: NDArray[np.intp]) -> None:
-    """Name the values below their fields, as many as there is room for."""
-    step = -(-len(order) // _MOST_NAMES)
-    places = np.arange(0, len(order), step)
-    words = [along.words[order[at]] if along.words else f"{along.places[order[at]]:.4g}" for at in places]
-    ax.set(**{f"{which}label": along.label, f"{which}ticks": places, f"{which}ticklabels": words})
+def _corners(up: NDArray[np.float64], right: NDArray[np.float64]) -> list[tuple[float, float]]:
+    """Corners of a field from its edges."""
+    (bottom, top), (left, end) = up.tolist(), right.tolist()
+    return [(left, bottom), (left, top), (end, top), (end, bottom)]
 
 
 def _legend(ax: Axes, handles: Sequence[Artist], labels: Sequence[str]) -> None:
@@ -181,7 +176,7 @@ def _legend(ax: Axes, handles: Sequence[Artist], labels: Sequence[str]) -> None:
         labels,
         loc="lower left",
         bbox_to_anchor=(0.0, 1.0),
-        ncols=min(4, len(labels)),
+        ncols=legend_columns(ax, labels),
         frameon=False,
         fontsize="small",
     )

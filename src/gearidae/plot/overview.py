@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import xarray as xr
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 
 from gearidae.archive.select import is_roller, scene_of, swept_dims
 from gearidae.archive.specimen import specimen_label
@@ -35,17 +35,19 @@ def usual_pictures(ds: xr.Dataset, kind: str) -> dict[str, str]:
     return {picture.name: picture.caption for picture in studies()[kind].pictures if picture.needs(ds)}
 
 
-def overview(ds: xr.Dataset) -> Figure:
+def overview(ds: xr.Dataset, *, figure: Figure | SubFigure | None = None) -> Figure | SubFigure:
     """Draw a dataset: gear speed and contact torque of a gear pair, force and gap of a roller.
 
     Parameters
     ----------
     ds : xarray.Dataset
         A single run or a sweep; of more than seven runs, seven are shown.
+    figure : matplotlib Figure or SubFigure, optional
+        Where to draw; by default a new one.
 
     Returns
     -------
-    matplotlib Figure
+    matplotlib Figure or SubFigure
 
     Raises
     ------
@@ -55,7 +57,7 @@ def overview(ds: xr.Dataset) -> Figure:
     above, below = (roller_force, roller_gap) if is_roller(ds) else (gear_speed, contact_torque)
     strips = 1 if is_roller(ds) else len(runs_of(ds, "gear_contact_torque"))
     lower = 2.8 if strips == 1 else 0.8 + 0.62 * strips
-    figure = new_picture((7.6, 3.2 + lower), layout="constrained")
+    figure = figure or new_picture((7.6, 3.2 + lower), panels=True, layout="constrained")
     grid = figure.add_gridspec(2, 1, height_ratios=(3.2, lower))
     top, bottom = figure.add_subplot(grid[0]), figure.add_subplot(grid[1])
     above(ds, top)

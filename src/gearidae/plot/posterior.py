@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 
 from gearidae.archive.dataset import dimension_names
 from gearidae.arrays import Floats
@@ -34,17 +34,19 @@ class _Key:
     quantiles: Floats
 
 
-def posterior(ds: xr.Dataset) -> Figure:
+def posterior(ds: xr.Dataset, *, figure: Figure | SubFigure | None = None) -> Figure | SubFigure:
     """Draw the posterior density of each key and, below the diagonal, of each two keys.
 
     Parameters
     ----------
     ds : xarray.Dataset
         From `gearidae.studies.calibrate`.
+    figure : matplotlib Figure or SubFigure, optional
+        Where to draw; by default a new one.
 
     Returns
     -------
-    Figure
+    Figure or SubFigure
         On the diagonal the band between the outermost quantiles is faint, that between the inner ones is full; a line
         is at the mean.
 
@@ -59,7 +61,7 @@ def posterior(ds: xr.Dataset) -> Figure:
     weight = _cells(ds, names, axes)
     count = len(keys)
     size = (7.2, 3.8) if count == 1 else (_PANEL * count + 0.8, _PANEL * count + 0.4)
-    figure = new_picture(size, layout="constrained")
+    figure = figure or new_picture(size, panels=count > 1, layout="constrained")
     for row in range(count):
         for column in range(row + 1):
             ax = figure.add_subplot(count, count, row * count + column + 1, axes_class=PictureAxes)
@@ -76,7 +78,7 @@ def _axis(ds: xr.Dataset, key: str, name: str) -> _Key:
     """Cells of a grid, or bins of draws."""
     values = ds[name]
     along = parameter_axis(values)
-    factor = _factor(values.values, along.places)
+    factor = along.factor
     if "weight" in ds:
         half = 0.5 * (along.places[1] - along.places[0])
         edges = np.append(along.places - half, along.places[-1] + half)
@@ -84,12 +86,6 @@ def _axis(ds: xr.Dataset, key: str, name: str) -> _Key:
         edges = np.linspace(along.places.min(), along.places.max(), _BINS + 1)
     summary = ds.sel(parameter=key)
     return _Key(edges, along.label, factor * float(summary["mean"]), factor * summary["quantiles"].values)
-
-
-def _factor(values: Floats, places: Floats) -> float:
-    """What values in SI units are to be multiplied by on their axis."""
-    largest = int(np.abs(values).argmax())
-    return float(places[largest] / values[largest]) if values[largest] != 0.0 else 1.0
 
 
 def _cells(ds: xr.Dataset, names: list[str], axes: list[_Key]) -> Callable[[list[int]], Floats]:

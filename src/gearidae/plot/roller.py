@@ -5,7 +5,7 @@ from __future__ import annotations
 import xarray as xr
 from matplotlib.axes import Axes
 
-from gearidae.drawing.style import label_time, largest, legend, new_axes, runs_of, scale_for, tidy
+from gearidae.drawing.style import label_time, largest, legend, line_width, new_axes, runs_of, scale_for, tidy
 
 
 def roller_force(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
@@ -69,11 +69,11 @@ def _draw(ds: xr.Dataset, ax: Axes | None, name: str, unit: str, words: str) -> 
             values * scale.factor,
             color=run.colour,
             linestyle=run.line,
-            linewidth=1.4,
+            linewidth=line_width(1.4),
             label=run.label,
         )
     tidy(ax)
     legend(ax, runs)
-    ax.axhline(0.0, color="0.3", linewidth=0.8, zorder=1)
+    ax.axhline(0.0, color="0.3", linewidth=line_width(0.8), zorder=1)
     ax.set_ylabel(f"{words} ({scale.unit})")
     return ax

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.ticker import EngFormatter
 
 from gearidae import analysis
 from gearidae.analysis.ringing import hidden
@@ -20,7 +19,18 @@ from gearidae.analysis.verdict import START_UP
 from gearidae.archive.pieces import pieces, reached
 from gearidae.archive.select import runs, scene_of
 from gearidae.arrays import Floats
-from gearidae.drawing.style import Run, legend, new_axes, runs_of, scale_for, thin, tidy
+from gearidae.drawing.style import (
+    Run,
+    characters,
+    label_axis,
+    legend,
+    line_width,
+    new_axes,
+    runs_of,
+    scale_for,
+    thin,
+    tidy,
+)
 from gearidae.errors import SceneError
 from gearidae.scene.prefixes import with_prefix
 
@@ -44,8 +54,6 @@ _FLAT = ("tukey", 0.2)
 _MULTIPLES = 6.0
 _MARKED_IF_WIDE = 4
 """Multiples of the highest line that a linear axis shows, and of the mesh that are marked on a logarithmic one."""
-_IN_A_LINE = 95
-"""Characters of a note that a line below a picture takes."""
 _MOST_SAMPLES = 2**19
 """Samples of a run that are analysed for a picture, which could not show more lines."""
 
@@ -94,7 +102,7 @@ def cycle(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
             values,
             color=run.colour,
             linestyle=run.line,
-            linewidth=1.0,
+            linewidth=line_width(1.0),
             label=run.label,
         )
     ax.set_xlabel(f"time within the last {name} ({scale.unit})")
@@ -150,7 +158,9 @@ def power_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
         frequency, power = density["frequency"].values, density.values
         if wide:
             frequency, power = banded(frequency[1:], power[1:], resolution)  # 0 has no place on the axis
-        ax.semilogy(frequency, power, color=run.colour, linestyle=run.line, linewidth=0.9, label=run.label)
+        ax.semilogy(
+            frequency, power, color=run.colour, linestyle=run.line, linewidth=line_width(0.9), label=run.label
+        )
     nyquist = float(density["frequency"][-1])
     if wide:
         ax.set_xscale("log")
@@ -160,8 +170,7 @@ def power_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     _fit_heights(ax, wide)
     _mark_all(ax, drive, mesh, rings if wide and len(shown) == 1 else [])
     _name_estimate(ax, resolution, wide)
-    ax.xaxis.set_major_formatter(EngFormatter("Hz"))
-    ax.set_xlabel("frequency")
+    label_axis(ax.xaxis, "frequency", "Hz")
     _note_aliases(ax, _alias_note(shown, found))
     ax.set_ylabel("power spectral density\n((rad/s)²/Hz)")
     tidy(ax)
@@ -202,7 +211,7 @@ def orders(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
             density,
             color=run.colour,
             linestyle=run.line,
-            linewidth=0.9,
+            linewidth=line_width(0.9),
             label=run.label,
         )
     ax.set_xlim(0.0, _MARKED_IF_WIDE * 1.1 * mesh)
@@ -271,14 +280,20 @@ def spectrogram(ds: xr.Dataset, ax: Axes | None = None, *, highest: float | None
     lines = {"mesh": mesh, "pinion": mesh / int(gears["pinion_teeth"]), "gear": turns}
     for (name, line), style in zip(lines.items(), ("-", "--", ":"), strict=True):
         if np.nanmax(line) > _APART * shown:
-            ax.plot(density["time"] * scale.factor, line, style, color="white", linewidth=0.8, label=name)
+            ax.plot(
+                density["time"] * scale.factor,
+                line,
+                style,
+                color="white",
+                linewidth=line_width(0.8),
+                label=name,
+            )
     ax.set_ylim(0.0, shown)
     if ax.get_lines():
         ax.legend(loc="upper left", fontsize="small", labelcolor="white", facecolor="0.2")
-    ax.yaxis.set_major_formatter(EngFormatter("Hz"))
+    label_axis(ax.yaxis, "frequency", "Hz")
     ax.set_xlabel(f"time ({scale.unit})")
     _note_aliases(ax, str(found.attrs.get("note", "")))
-    ax.set_ylabel("frequency")
     return ax
 
 
@@ -324,7 +339,7 @@ def impact_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
             density / at_ring,
             color=run.colour,
             linestyle=run.line,
-            linewidth=1.0,
+            linewidth=line_width(1.0),
             label=drawn[-1].label,
         )
     note = _alias_note(shown, responses)
@@ -333,8 +348,7 @@ def impact_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
         raise SceneError("plot", "impact_spectrum", f"{why} ({note})" if note else why)
     ax.set_xlim(0.0, min(nyquist, 2.0 * highest))
     ax.set_ylim(0.0, 1.25)
-    ax.xaxis.set_major_formatter(EngFormatter("Hz"))
-    ax.set_xlabel("frequency")
+    label_axis(ax.xaxis, "frequency", "Hz")
     ax.set_ylabel("power spectral density\nover that of the ring")
     _note_aliases(ax, note)
     tidy(ax)
@@ -385,7 +399,7 @@ def _note_aliases(ax: Axes, note: str) -> None:
     """Say below a picture that lines of it may be aliases."""
     if note:
         ax.annotate(
-            "\n".join(wrap(note, _IN_A_LINE)),
+            "\n".join(wrap(note, characters(ax))),
             (0.0, 0.0),
             xycoords=("axes fraction", ax.xaxis.label),
             xytext=(0, -3),
@@ -517,7 +531,7 @@ def _last_pitch(speed: xr.DataArray, pitch: float) -> xr.DataArray:
 
 def _mark(ax: Axes, frequency: float, text: str) -> None:
     """Name a line of a spectrum at its top."""
-    ax.axvline(frequency, color="0.75", linewidth=0.7, zorder=0)
+    ax.axvline(frequency, color="0.75", linewidth=line_width(0.7), zorder=0)
     ax.annotate(
         text,
         (frequency, 0.985),

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 from matplotlib.axis import Axis
-from matplotlib.figure import Figure
-from matplotlib.ticker import EngFormatter, LogLocator, NullFormatter
+from matplotlib.figure import Figure, SubFigure
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from gearidae.drawing.picture import new_picture
-from gearidae.drawing.style import COLOURS, LINE_STYLES, tidy
+from gearidae.drawing.style import label_axis, line_colour, line_style, line_width, tidy
 from gearidae.errors import SceneError
 
 _PANELS = (
@@ -20,7 +20,9 @@ _PANELS = (
 _PER_SQUARE_MICRON = 1e-12
 
 
-def surface(ds: xr.Dataset, cutoff: float | None = None) -> Figure:
+def surface(
+    ds: xr.Dataset, cutoff: float | None = None, *, figure: Figure | SubFigure | None = None
+) -> Figure | SubFigure:
     """Draw the three numbers of a rough surface against the cut-off wavelength.
 
     Parameters
@@ -29,6 +31,8 @@ def surface(ds: xr.Dataset, cutoff: float | None = None) -> Figure:
         ``statistics`` of `gearidae.surface_from`.
     cutoff : float, optional
         Chosen cut-off wavelength [m], to be marked.
+    figure : matplotlib Figure or SubFigure, optional
+        Where to draw; by default a new one.
 
     Returns
     -------
@@ -43,7 +47,7 @@ def surface(ds: xr.Dataset, cutoff: float | None = None) -> Figure:
     missing = [name for name in ("by", "cutoff", *(name for name, *_ in _PANELS)) if name not in ds.variables]
     if missing:
         raise SceneError("plot", ", ".join(missing), "is missing: give .statistics of gearidae.surface_from")
-    figure = new_picture((6.4, 6.0), layout="constrained")
+    figure = figure or new_picture((6.4, 6.0), panels=True, layout="constrained")
     panels = figure.subplots(len(_PANELS), 1, sharex=True)
     for ax, (name, label, unit) in zip(panels, _PANELS, strict=True):
         factor = _PER_SQUARE_MICRON if unit.startswith("1/") else 1.0
@@ -51,26 +55,28 @@ def surface(ds: xr.Dataset, cutoff: float | None = None) -> Figure:
             ax.plot(
                 ds["cutoff"].values,
                 factor * ds[name].sel(by=way).values,
-                color=COLOURS[number],
-                linestyle=LINE_STYLES[number],
+                color=line_colour(number),
+                linestyle=line_style(number),
                 marker="os"[number % 2],
                 markersize=3,
-                linewidth=1.3,
+                linewidth=line_width(1.3),
                 label=f"by {way}",
             )
         if cutoff is not None:
-            ax.axvline(cutoff, color="0.5", linewidth=0.9)
+            ax.axvline(cutoff, color="0.5", linewidth=line_width(0.9))
         ax.set_xscale("log")
         if np.nanmax(ds[name].values) > 5.0 * np.nanmin(ds[name].values):
             ax.set_yscale("log")
             _label_decades(ax.yaxis)
-        ax.yaxis.set_major_formatter(EngFormatter(unit) if unit == "m" else "{x:g}")
-        ax.set_ylabel(label if unit == "m" else f"{label} ({unit})")
+        if unit == "m":
+            label_axis(ax.yaxis, label, unit)
+        else:
+            ax.yaxis.set_major_formatter("{x:g}")
+            ax.set_ylabel(f"{label} ({unit})")
         tidy(ax)
     panels[0].legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, frameon=False, fontsize="small")
     _label_decades(panels[-1].xaxis)
-    panels[-1].xaxis.set_major_formatter(EngFormatter("m"))
-    panels[-1].set_xlabel("cut-off wavelength: shorter waves are left out")
+    label_axis(panels[-1].xaxis, "cut-off wavelength, shorter waves are left out", "m")
     return figure
 
 

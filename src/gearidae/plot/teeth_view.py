@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike
 
@@ -42,7 +42,9 @@ _NO_ARROW = 0.01  # of the largest force: less has no arrow
 _ROUNDED = 8.0  # roughnesses up to which the gap at a rounded end counts as near
 
 
-def teeth(ds: xr.Dataset, *, time: float | None = None) -> Figure:
+def teeth(
+    ds: xr.Dataset, *, time: float | None = None, figure: Figure | SubFigure | None = None
+) -> Figure | SubFigure:
     """Draw the teeth in mesh at one time, with close-ups of the pairs that meet.
 
     The gears are drawn to scale, from the involutes of the scene and the recorded motion. Gaps are nanometres: the
@@ -54,10 +56,12 @@ def teeth(ds: xr.Dataset, *, time: float | None = None) -> Figure:
         One run of a gear pair; from a sweep, one selected with ``sel``.
     time : float, optional
         Time [s], of which the nearest sample is shown; by default the last sample.
+    figure : matplotlib Figure or SubFigure, optional
+        Where to draw, about as high as wide; by default a new one.
 
     Returns
     -------
-    matplotlib Figure
+    matplotlib Figure or SubFigure
 
     Raises
     ------
@@ -72,7 +76,7 @@ def teeth(ds: xr.Dataset, *, time: float | None = None) -> Figure:
     own, with the joined ones marked.
     """
     (state,) = mesh_states(ds, [math.inf if time is None else float(time)])
-    view = TeethView(ds, [state])
+    view = TeethView(ds, [state], figure)
     view.draw(state)
     return view.figure
 
@@ -120,16 +124,20 @@ class TeethView:
         One run of a gear pair.
     states : sequence of MeshState
         What will be drawn; the largest force among them sets the scale of the arrows.
+    figure : matplotlib Figure or SubFigure, optional
+        Where; by default a new one.
     """
 
-    def __init__(self, ds: xr.Dataset, states: Sequence[MeshState]) -> None:
+    def __init__(
+        self, ds: xr.Dataset, states: Sequence[MeshState], figure: Figure | SubFigure | None = None
+    ) -> None:
         self._scene = require_gears(run_scene(ds))
         self._picture = tooth_outline(self._scene)
         self._largest = max(
             (abs(contact.force) for state in states for contact in state.contacts), default=0.0
         )
         self._places = pairs_at_most(self._scene)
-        self.figure = new_picture((7.6, 7.2))
+        self.figure = figure or new_picture((7.6, 7.2), panels=True)
         self._mesh = self.figure.add_axes((0.015, 0.525, 0.97, 0.43))
         width = 0.985 / self._places
         self._close = [

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from textwrap import wrap
 
 import numpy as np
 import xarray as xr
@@ -13,7 +14,9 @@ from gearidae.drawing.style import (
     POSITIVE,
     Run,
     Scale,
+    characters,
     label_time,
+    line_width,
     new_axes,
     number_shown,
     runs_of,
@@ -29,7 +32,7 @@ def contact_torque(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
 
     The runs of a sweep are set one below the other, all to the same scale, with torque that drives the gear
     above the line and torque by which adhesion holds it back below. The scale is that of the runs without
-    their start-up, unless a torque or the speed follows a schedule; what exceeds it there is cut.
+    their start-up, unless a torque or the speed follows a schedule or a law; what exceeds it there is cut.
 
     Parameters
     ----------
@@ -63,15 +66,15 @@ def _curve(ax: Axes, run: Run, low: float, high: float, scale: Scale) -> None:
     """Draw one run as a curve."""
     time = label_time(ax, [run])
     at, torque = run.trace(_TORQUE)
-    ax.plot(at * time.factor, torque * scale.factor, color=run.colour, linewidth=1.0)
+    ax.plot(at * time.factor, torque * scale.factor, color=run.colour, linewidth=line_width(1.0))
     tidy(ax)
     if 0.0 < low < 0.5 * (high - low):
         low = 0.0  # a run-up begins there
     margin = 0.06 * (high - low) or 0.06 * abs(high) or 1.0 / scale.factor
     ax.set_ylim((low - margin) * scale.factor, (high + margin) * scale.factor)
     if low < 0.0 < high:
-        ax.axhline(0.0, color="0.3", linewidth=0.8, zorder=1)
-    ax.set_ylabel(f"contact torque on the gear ({scale.unit})")
+        ax.axhline(0.0, color="0.3", linewidth=line_width(0.8), zorder=1)
+    ax.set_ylabel(f"contact torque\non the gear ({scale.unit})")
 
 
 def _strips(ax: Axes, runs: list[Run], low: float, high: float, scale: Scale) -> None:
@@ -84,7 +87,7 @@ def _strips(ax: Axes, runs: list[Run], low: float, high: float, scale: Scale) ->
         clipped = np.clip(torque, low, high)
         cut = cut or not np.array_equal(clipped, torque, equal_nan=True)
         zero = -place * step
-        ax.axhline(zero * scale.factor, color="0.6", linewidth=0.6, zorder=1)
+        ax.axhline(zero * scale.factor, color="0.6", linewidth=line_width(0.6), zorder=1)
         for part, colour in ((np.maximum(clipped, 0.0), POSITIVE), (np.minimum(clipped, 0.0), NEGATIVE)):
             if part.any():
                 ax.fill_between(
@@ -93,7 +96,7 @@ def _strips(ax: Axes, runs: list[Run], low: float, high: float, scale: Scale) ->
                     (zero + part) * scale.factor,
                     where=part != 0.0,
                     color=colour,
-                    linewidth=0.6,
+                    linewidth=line_width(0.6),
                 )
     tidy(ax)
     bottom = low - (len(runs) - 1) * step
@@ -103,9 +106,12 @@ def _strips(ax: Axes, runs: list[Run], low: float, high: float, scale: Scale) ->
     ax.grid(visible=False, axis="y")
     ax.spines["left"].set_visible(False)
     details = [number_shown(runs), "start-up cut off" * cut]
-    ax.set_title(
-        f"{', '.join(filter(None, ['contact torque on the gear', *details]))}\n"
+    lines = [
+        ", ".join(filter(None, ["contact torque on the gear", *details])),
         "drives it (blue), holds it back by adhesion (orange)",
+    ]
+    ax.set_title(
+        "\n".join(part for line in lines for part in wrap(line, characters(ax))),
         loc="left",
         fontsize="medium",
     )

@@ -314,9 +314,7 @@ def picture(ds: xr.Dataset, ax: Axes | None = None, *, highest: float | None = N
     SceneError
         If the dataset is something else.
     """
-    from matplotlib.ticker import EngFormatter
-
-    from gearidae.drawing.style import COLOURS, new_axes
+    from gearidae.drawing.style import label_axis, line_colour, line_width, new_axes
 
     STUDY.require(ds)
     ax = new_axes(ax, height=4.4)
@@ -339,7 +337,11 @@ def picture(ds: xr.Dataset, ax: Axes | None = None, *, highest: float | None = N
     top = float(shown["frequency"][-1])
     for number, multiple in enumerate(multiples):
         ax.plot(
-            speed, multiple * mesh, color="white", linewidth=0.8, label="" if number else "mesh and multiples"
+            speed,
+            multiple * mesh,
+            color="white",
+            linewidth=line_width(0.8),
+            label="" if number else "mesh and multiples",
         )
         if multiple * mesh[-1] < top:
             place: dict[str, Any] = {"xytext": (-2, 3), "textcoords": "offset points", "ha": "right"}
@@ -349,15 +351,14 @@ def picture(ds: xr.Dataset, ax: Axes | None = None, *, highest: float | None = N
     for name, style in (("pinion", "--"), ("gear", ":")):
         line = mesh / int(ds.attrs[f"{name}_teeth"])
         if np.nanmax(line) > _APART * top:
-            ax.plot(speed, line, style, color="white", linewidth=0.8, label=name)
-    ax.plot(speed, contact, color=COLOURS[4], linewidth=1.6, label="contact")
+            ax.plot(speed, line, style, color="white", linewidth=line_width(0.8), label=name)
+    ax.plot(speed, contact, color=line_colour(4), linewidth=line_width(1.6), label="contact")
     met = np.isfinite(ds["critical_speed"].values)
     at = ds["critical_speed"].values[met]
-    ax.plot(at, np.interp(at, speed, contact), "o", color=COLOURS[1], fillstyle="none", label="_met")
+    ax.plot(at, np.interp(at, speed, contact), "o", color=line_colour(1), fillstyle="none", label="_met")
     ax.set_ylim(0.0, top)
-    ax.yaxis.set_major_formatter(EngFormatter("Hz"))
+    label_axis(ax.yaxis, "frequency", "Hz")
     ax.set_xlabel("speed of the pinion (rad/s)")
-    ax.set_ylabel("frequency")
     if "note" in ds.attrs:
         ax.set_title(str(ds.attrs["note"]).replace("; ", ";\n"), fontsize="x-small", loc="left")
     ax.legend(loc="upper left", fontsize="x-small", labelcolor="white", facecolor="0.2")

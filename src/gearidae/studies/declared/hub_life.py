@@ -134,7 +134,7 @@ def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     SceneError
         If the dataset is none of lives of hubs, or no joint wears.
     """
-    from gearidae.drawing.style import COLOURS, LINE_STYLES, new_axes, tidy
+    from gearidae.drawing.style import line_colour, line_style, new_axes, tidy
 
     answered = _answered(STUDY.require(ds)).sortby("frequency")
     if not np.isfinite(answered["turns"]).any():
@@ -144,11 +144,13 @@ def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
         joint = answered.isel(joint=number)
         if not np.isfinite(joint["turns"]).any():
             continue
-        style = {"color": COLOURS[number], "linestyle": LINE_STYLES[number], "label": name}
+        style = {"color": line_colour(number), "linestyle": line_style(number), "label": name}
         ax.plot(joint["frequency"], joint["turns"], marker="o", markersize=3.5, **style)
         if answered.attrs["spread"] > 1.0:
             low, _, high = joint["turns_quantile"].values.T
-            ax.fill_between(joint["frequency"], low, high, color=COLOURS[number], alpha=0.15, linewidth=0.0)
+            ax.fill_between(
+                joint["frequency"], low, high, color=line_colour(number), alpha=0.15, linewidth=0.0
+            )
     ax.set_yscale("log")
     ax.set_xlabel("turns of the pinion in a second")
     ax.set_ylabel("life (turns)")

@@ -177,7 +177,7 @@ def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     SceneError
         If the dataset has no lives, or none is finished.
     """
-    from gearidae.drawing.style import POSITIVE, new_axes, tidy
+    from gearidae.drawing.style import POSITIVE, line_width, new_axes, tidy
 
     surviving = surviving_share(ds)
     ax = new_axes(ax, height=3.8)
@@ -188,7 +188,7 @@ def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
         np.append(surviving[name].values, surviving[name].values[-1]) for name in ("share", "low", "high")
     )
     ax.fill_between(at, low, high, step="post", color=POSITIVE, alpha=0.25, linewidth=0, label="95 % band")
-    ax.step(at, share, where="post", color=POSITIVE, linewidth=1.4, label="still turn")
+    ax.step(at, share, where="post", color=POSITIVE, linewidth=line_width(1.4), label="still turn")
     if turning.size:
         there = share[np.searchsorted(at[:-1], turning, side="right") - 1]
         ax.plot(turning, there, "|", color="0.3", markersize=8.0, label="followed no further")

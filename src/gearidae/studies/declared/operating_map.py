@@ -199,8 +199,8 @@ def picture(chart: xr.Dataset, ax: Axes | None = None) -> Axes:
     from matplotlib.colors import BoundaryNorm, ListedColormap
     from matplotlib.patches import Patch
 
-    from gearidae.drawing.parameter_axis import parameter_axis
-    from gearidae.drawing.style import new_axes
+    from gearidae.drawing.parameter_axis import cell_edges, parameter_axis, scale_axis
+    from gearidae.drawing.style import legend_columns, line_width, new_axes
 
     _check(chart)
     for dim in chart["outcome"].dims:
@@ -212,31 +212,28 @@ def picture(chart: xr.Dataset, ax: Axes | None = None) -> Axes:
     colours = ListedColormap([colour for colour, _ in _LOOKS.values()])
     across, along = parameter_axis(horizontal), parameter_axis(vertical)
     ax.pcolormesh(
-        _edges(across.places),
-        _edges(along.places),
+        cell_edges(across),
+        cell_edges(along),
         chart["outcome"].values,
         cmap=colours,
         norm=norm,
         edgecolor="w",
-        linewidth=0.4,
+        linewidth=line_width(0.4),
     )
     _mark_crossings(ax, chart, across.places, along.places)
-    if across.words:
-        ax.set_xticks(across.places, across.words)
-    if along.words:
-        ax.set_yticks(along.places, along.words)
-    if across.limit is not None:
-        ax.set_xlim(right=min(ax.get_xlim()[1], across.limit))
-    if along.limit is not None:
-        ax.set_ylim(top=min(ax.get_ylim()[1], along.limit))
-    ax.set_xlabel(across.label)
-    ax.set_ylabel(along.label)
+    scale_axis(ax, "x", across)
+    scale_axis(ax, "y", along)
     present = set(chart["outcome"].values.ravel().tolist())
     handles = [
         Patch(color=colour, label=words) for code, (colour, words) in _LOOKS.items() if code in present
     ]
     ax.legend(
-        handles=handles, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4, frameon=False, fontsize="small"
+        handles=handles,
+        loc="lower left",
+        bbox_to_anchor=(0.0, 1.0),
+        ncols=legend_columns(ax, [str(handle.get_label()) for handle in handles]),
+        frameon=False,
+        fontsize="small",
     )
     return ax
 
@@ -254,15 +251,6 @@ def _mark_crossings(ax: Axes, chart: xr.Dataset, across: Floats, along: Floats) 
             markersize=4,
             color=_LOOKS[Outcome.CROSSES_BACKLASH][0],
         )
-
-
-def _edges(values: Floats) -> Floats:
-    """Edges of the cells around values in rising order: the middles, and as far beyond the ends."""
-    if values.size == 1:
-        half = 0.5 * abs(values[0]) or 0.5
-        return np.array([values[0] - half, values[0] + half])
-    middles = 0.5 * (values[1:] + values[:-1])
-    return np.concatenate([[2.0 * values[0] - middles[0]], middles, [2.0 * values[-1] - middles[-1]]])
 
 
 STUDY = Study(

@@ -208,13 +208,13 @@ def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     SceneError
         If the dataset is none of pull-off forces.
     """
-    from gearidae.drawing.style import COLOURS, new_axes, scale_for, tidy
+    from gearidae.drawing.style import line_colour, new_axes, scale_for, tidy
 
     forces = np.sort(STUDY.require(ds)["pull_off"].values)
     scale = scale_for(float(forces[-1]), "N")
     ax = new_axes(ax, height=3.2)
     shares = np.arange(1, forces.size + 1) / forces.size
-    ax.step(np.append(0.0, forces) * scale.factor, np.append(0.0, shares), where="post", color=COLOURS[0])
+    ax.step(np.append(0.0, forces) * scale.factor, np.append(0.0, shares), where="post", color=line_colour(0))
     ax.set_xlabel(f"pull-off ({scale.unit})")
     ax.set_ylabel("share of the pairs that part")
     ax.set_ylim(0.0, 1.0)

@@ -250,7 +250,7 @@ def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     SceneError
         If the dataset is something else.
     """
-    from gearidae.drawing.style import COLOURS, new_axes, scale_for, tidy
+    from gearidae.drawing.style import line_colour, line_width, new_axes, scale_for, tidy
 
     STUDY.require(ds)
     ax = new_axes(ax)
@@ -260,7 +260,7 @@ def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     times = times[np.isfinite(times)]
     steps = np.concatenate([[0.0], times, [end]]) * scale.factor
     shares = np.concatenate([np.arange(times.size + 1), [times.size]]) / ds.sizes["member"]
-    ax.step(steps, shares, where="post", color=COLOURS[0], linewidth=1.2, label="members")
+    ax.step(steps, shares, where="post", color=line_colour(0), linewidth=line_width(1.2), label="members")
     share = ds["probability"].values
     ax.errorbar(
         ds["by"].values * scale.factor,
@@ -270,7 +270,7 @@ def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
         fmt="o",
         markersize=4,
         capsize=3,
-        color=COLOURS[1],
+        color=line_colour(1),
         label=f"{100.0 * float(ds.attrs['confidence']):g} % interval",
     )
     ax.set_xlabel(f"time ({scale.unit})")

@@ -27,6 +27,7 @@ SEEDS: Final = 20
 """Gears of a population by default."""
 SLOW_ENOUGH: Final = 0.1
 """Change of the median by half the rate below which a rate is slow enough."""
+_TORQUE_WORDS = "starting torque on the pinion"
 _FRACTION: Final = "coating.sam_fraction"
 _REST: Final = "initial.rest_time"
 _ALONG: Final = ("sam_fraction",)
@@ -233,10 +234,13 @@ def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     """
     from matplotlib.ticker import StrMethodFormatter
 
+    from gearidae.drawing.style import label_axis
+
     STUDY.require(ds)
     percent = 100.0 * ds["sam_fraction"].values
     ax = _torques_over(ds, percent, ax)
     ax.set_yscale("log")
+    label_axis(ax.yaxis, _TORQUE_WORDS, "N m")
     ax.set_xlabel("SAM (%)")
     ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
     if len(percent) > 1:
@@ -266,7 +270,7 @@ def picture_of_rests(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     SceneError
         If the dataset is something else, or nothing holds the gear.
     """
-    from matplotlib.ticker import EngFormatter
+    from gearidae.drawing.style import label_axis
 
     RESTS.require(ds)
     ds = ds.sortby("rest_time")
@@ -275,16 +279,14 @@ def picture_of_rests(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     ax = _torques_over(ds, np.where(times > 0.0, times, 0.1 * shortest), ax)
     ax.set_xscale("log")
     ax.set_ylim(bottom=0.0)
-    ax.set_xlabel("time at rest")
-    ax.xaxis.set_major_formatter(EngFormatter("s"))
+    label_axis(ax.yaxis, _TORQUE_WORDS, "N m")
+    label_axis(ax.xaxis, "time at rest", "s")
     return ax
 
 
 def _torques_over(ds: xr.Dataset, places: Floats, ax: Axes | None) -> Axes:
     """Draw both torques over some places, and the drive's own."""
-    from matplotlib.ticker import EngFormatter
-
-    from gearidae.drawing.style import COLOURS, LINE_STYLES, new_axes, tidy
+    from gearidae.drawing.style import line_colour, line_style, line_width, new_axes, tidy
 
     ax = new_axes(ax, height=3.8)
     drawn = False
@@ -298,22 +300,24 @@ def _torques_over(ds: xr.Dataset, places: Floats, ax: Axes | None) -> Axes:
             ax.plot(
                 places[held],
                 torque[held],
-                color=COLOURS[number],
-                linestyle=LINE_STYLES[number],
+                color=line_colour(number),
+                linestyle=line_style(number),
                 marker=".",
-                linewidth=1.2,
+                linewidth=line_width(1.2),
                 label=label,
             )
     if not drawn:
         raise SceneError(
             "plot", "starting_torque", "adhesion does not hold the gear at any of these fractions"
         )
-    ax.set_ylabel("starting torque on the pinion")
-    ax.yaxis.set_major_formatter(EngFormatter("N m"))
     tidy(ax)
     if ds.attrs.get("drive_torque", 0.0) > 0.0:
         ax.axhline(
-            ds.attrs["drive_torque"], color="0.3", linewidth=0.8, linestyle=":", label="the drive's own"
+            ds.attrs["drive_torque"],
+            color="0.3",
+            linewidth=line_width(0.8),
+            linestyle=":",
+            label="the drive's own",
         )
     ax.legend(frameon=False, fontsize="small")
     return ax
@@ -339,9 +343,9 @@ def picture_of_gears(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     SceneError
         If the dataset is something else, or no gear has started.
     """
-    from matplotlib.ticker import EngFormatter, LogLocator, NullFormatter
+    from matplotlib.ticker import LogLocator, NullFormatter
 
-    from gearidae.drawing.style import COLOURS, LINE_STYLES, new_axes, tidy
+    from gearidae.drawing.style import label_axis, line_colour, line_style, line_width, new_axes, tidy
 
     GEARS.require(ds)
     if not np.isfinite(ds["starting_torque"]).any():
@@ -355,23 +359,26 @@ def picture_of_gears(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
             torque,
             np.arange(1, torque.size + 1) / count,
             where="post",
-            color=COLOURS[number % len(COLOURS)],
-            linestyle=LINE_STYLES[number % len(LINE_STYLES)],
+            color=line_colour(number),
+            linestyle=line_style(number),
             marker=".",
-            linewidth=1.2,
+            linewidth=line_width(1.2),
             label=f"SAM {100.0 * float(torques['sam_fraction']):.4g} %",
         )
     ax.set_xscale("log")
-    ax.xaxis.set_major_formatter(EngFormatter("N m"))
     ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     ax.xaxis.set_minor_formatter(NullFormatter())
     ax.set_ylim(0.0, 1.02)
-    ax.set_xlabel("starting torque on the pinion")
+    label_axis(ax.xaxis, _TORQUE_WORDS, "N m")
     ax.set_ylabel(f"share of {count} gears")
     tidy(ax)
     if ds.attrs.get("drive_torque", 0.0) > 0.0:
         ax.axvline(
-            ds.attrs["drive_torque"], color="0.3", linewidth=0.8, linestyle=":", label="the drive's own"
+            ds.attrs["drive_torque"],
+            color="0.3",
+            linewidth=line_width(0.8),
+            linestyle=":",
+            label="the drive's own",
         )
     ax.legend(frameon=False, fontsize="small")
     return ax

@@ -340,7 +340,7 @@ def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
         If the dataset is no sticking threshold.
     """
     from gearidae.drawing.parameter_axis import parameter_axis
-    from gearidae.drawing.style import NEGATIVE, POSITIVE, new_axes, tidy
+    from gearidae.drawing.style import NEGATIVE, POSITIVE, line_width, new_axes, tidy
 
     STUDY.require(ds)
     ax = new_axes(ax, height=3.8)
@@ -352,7 +352,7 @@ def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     along = parameter_axis(together.rename(_key(ds).rpartition(".")[2]).assign_attrs(ds["limit"].attrs))
     passes, limit, sticks = along.places
     ax.plot(exits, passes, "^", color=POSITIVE, markersize=5, label="passes")
-    ax.plot(exits, limit, color="0.3", linewidth=1.2, label="limit")
+    ax.plot(exits, limit, color="0.3", linewidth=line_width(1.2), label="limit")
     ax.plot(exits, sticks, "X", color=NEGATIVE, markersize=5, label="sticks")
     ax.set_xscale("log")
     ax.set_xticks(exits, [str(number) for number in exits])
