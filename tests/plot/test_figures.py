@@ -192,8 +192,8 @@ def test_an_ensemble_shows_what_its_members_did():
         assert (np.asarray(line.get_ydata()) > 1.0).all() == (verdict in ("sticks", "runs back"))
 
 
-def test_a_gear_driven_by_a_law_is_drawn_from_its_first_instant(swept):
-    ds = swept.sel(sam_fraction=[0.5])
+def test_a_gear_driven_by_a_law_is_drawn_from_its_first_instant():
+    ds = gd.simulate(LOW, t_end=0.003, samples=61)
     scene = json.loads(ds.attrs["scene"])
     scene["drive"]["law"] = {"name": "microengine"}
     (driven,), (plain,) = (

@@ -69,7 +69,7 @@ def test_fields_over_two_keys_need_no_samples(grid):
             right, top = path.vertices[:4].max(axis=0)
             (percent,) = (value for value in (34, 42, 100) if bottom < value < top)
             (torque,) = (value for value in (3.0, 4.5) if left < value < right)
-            shown[percent, torque * 1e-18] = name
+            shown[percent, {3.0: 3e-18, 4.5: 4.5e-18}[torque]] = name
             edges |= {bottom, top}
     # limits lie in the middle between two values, whatever their distance
     assert sorted(edges) == pytest.approx([30.0, 38.0, 71.0, 129.0])

@@ -142,16 +142,16 @@ def test_map_shows_the_first_impacts_the_later_ones_and_an_assessment(chart, low
     drawn(ax.figure)
 
 
-def test_ticks_carry_the_unit_that_the_label_leaves_out(chart, low, torques):
-    """A prefix without its unit, 5 k beside (Hz), is no unit."""
+def test_the_label_has_the_unit_and_the_prefix_of_all_ticks(chart, low, torques):
     frequencies = gd.plot.power_spectrum(low).xaxis
     impact = gd.plot.coating_map(chart).yaxis
-    for axis in (frequencies, impact):
-        assert axis.get_major_formatter()(5e3) == "5 kHz"
-        assert "Hz" not in axis.get_label_text()
     starting = gd.plot.starting_torque(torques).yaxis
-    assert starting.get_major_formatter()(5e-12) == "5 pN m"
-    assert "N m" not in starting.get_label_text()
+    scales = {"Hz": 1.0, "kHz": 1e3, "aN m": 1e-18, "fN m": 1e-15}
+    for axis, units in ((frequencies, ("Hz", "kHz")), (impact, ("Hz", "kHz")), (starting, ("aN m", "fN m"))):
+        unit = axis.get_label_text().rpartition("(")[2].removesuffix(")")
+        assert unit in units
+        assert axis.get_major_formatter()(5.0 * scales[unit]) == "5"
+        assert 1.0 <= max(axis.get_view_interval()) / scales[unit] < 1000.0
 
 
 def test_map_over_torque_names_its_lines():
