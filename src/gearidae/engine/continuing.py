@@ -59,7 +59,7 @@ from gearidae.errors import SceneError
 from gearidae.laws.shaft.schedule import segment_ends
 from gearidae.records import EventKind, Events, Flank
 from gearidae.records.quantity import convert
-from gearidae.scene import Scene
+from gearidae.scene import Scene, require_gears
 from gearidae.scene.differences import MAY_CHANGE, first_difference
 
 _SAME: Final = 1e-12
@@ -108,7 +108,7 @@ def checkpoint_of_start(scene: Scene, start: Start) -> Floats:
     assert start.scene is not None
     assert start.words is not None
     old, old_y = _restored(start.scene, start.words, start.began)
-    if old.model.scene.follow.gear != 0 and _torques(start.scene) != _torques(scene):
+    if old.model.scene.follow.gear != 0 and _torques_differ(start.scene, scene):
         settle_standing_at(old.addresses.place, float(old.model.state.time), old_y)
     new = problem_from(scene, start)
     new.prepare(scene.run.rtol, scene.run.sample_count)
@@ -141,9 +141,13 @@ def checkpoint_of_start(scene: Scene, start: Start) -> Floats:
     return new.checkpoint(time, y)
 
 
-def _torques(scene: Scene) -> tuple[object, object]:
-    """What drives the gears of a scene, and what loads them."""
-    return scene.drive, scene.load
+def _torques_differ(old: Scene, new: Scene) -> bool:
+    """Whether the new run does not know the torques of the old one: other ones, or schedules of its own time only."""
+    before, after = require_gears(old), require_gears(new)
+    if (before.drive, before.load) != (after.drive, after.load):
+        return True
+    drive, load = before.drive, before.load
+    return any(schedule.moves for schedule in (drive.schedule, drive.speed_knots(), load.schedule))
 
 
 def knots_at_start(problem: Problem) -> Floats:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +13,7 @@ from gearidae.laws.law import DRIVE, LOAD
 from gearidae.laws.shafts import slowing
 from gearidae.mesh.pair_contact import PairContact, pair_contact
 from gearidae.runs.rubbing import hub_constants, sliding, transmitted_share
-from gearidae.scene import GearScene, RollerScene, Scene, require_gears
+from gearidae.scene import GearScene, Knots, RollerScene, Scene, require_gears
 from gearidae.scene.joints import joints
 
 _PASSES = 200  # to a speed whose friction depends on it
@@ -150,18 +149,19 @@ def _balance(
     return 2.0 * surplus / slope if slope > 0.0 else math.inf
 
 
-def mean_over_run(scene: Scene, constant: float, knots: Sequence[tuple[float, float]]) -> float:
+def mean_over_run(scene: Scene, constant: float, knots: Knots) -> float:
     """Mean size of a constant plus a schedule over the run."""
     return _mean_size(_over_run(scene, constant, knots))
 
 
-def _over_run(scene: Scene, constant: float, knots: Sequence[tuple[float, float]]) -> Floats:
-    """Return a constant plus a schedule at even times of the run; cubics are taken for straight lines."""
+def _over_run(scene: Scene, constant: float, knots: Knots) -> Floats:
+    """Return a constant plus a schedule at even times of run or cycle; cubics are taken for straight lines."""
     if not knots:
         return np.array([constant])
-    table = np.array(knots)
+    span = min(scene.run.duration, knots.repeat or scene.run.duration)
+    table = np.array(knots.during(0.0, span))
     # Between knots the schedule is a straight line: what is off the mean of 4001 values lies below a thousandth.
-    times = np.linspace(0.0, scene.run.duration, 4001)
+    times = np.linspace(0.0, span, 4001)
     return np.asarray(constant + np.interp(times, table[:, 0], table[:, 1]), np.float64)
 
 

@@ -137,13 +137,11 @@ def _absent(table: str, group: Group) -> Iterator[str]:
         yield f"# {name} = {value}  # {field.description}"
 
 
-def _knots(knots: tuple[tuple[float, float], ...]) -> str:
+def _knots(knots: Knots) -> str:
     """Write a schedule, one knot in a line."""
     text = "[\n" + "".join(f"    [{time!r}, {value!r}],\n" for time, value in knots) + "]"
-    interpolation = getattr(knots, "interpolation", "linear")
-    return (
-        text if interpolation == "linear" else f"{{ interpolation = {_text(interpolation)}, knots = {text} }}"
-    )
+    settings = "".join(f"{key} = {_plain(value)}, " for key, value in knots.settings().items())
+    return f"{{ {settings}knots = {text} }}" if settings else text
 
 
 def _columns(listed: ListedAsperities) -> str:

@@ -146,8 +146,19 @@ class Scene(Group):
         check_tables(self)
         check_asperities(self)
         check_combinations(self)
+        self._check_schedules()
         self._check_bodies()
         return self
+
+    def _check_schedules(self) -> None:
+        """Let what schedules repeat be no more than a run can do."""
+        drive, load = self.drive or Drive(), self.load or Load()
+        for key, schedule in (
+            ("drive.schedule", drive.schedule),
+            ("drive.speed", drive.speed_knots()),
+            ("load.schedule", load.schedule),
+        ):
+            schedule.during(0.0, self.run.duration, key)
 
     def _check_bodies(self) -> None:
         """Check the tables of the bodies that meet."""

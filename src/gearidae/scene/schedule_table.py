@@ -2,7 +2,9 @@
 
 ``{file = "drive.csv", time = "t [ms]", value = "M [pN m]", interpolation = "cubic"}`` in a case file; in Python also
 ``data`` (a DataFrame) in place of ``file``, arrays or pint quantities as ``time`` and ``value``, ``knots`` (pairs), or
-a DataFrame of two columns as it is. The unit of a column stands in brackets in its name; without, it is SI.
+a DataFrame of two columns as it is. ``repeat`` is the time after which the knots come again, ``after = "run"`` lets
+their times count from the start of each run of a chain. The unit of a column stands in brackets in its name; without,
+it is SI.
 
 ``packed`` holds many knots as text: the bits of the numbers, as differences, sorted by significance, compressed.
 Nothing is lost; 10,000 knots at even times take some tens of kilobytes in place of half a megabyte.
@@ -25,13 +27,14 @@ from gearidae.scene.table_head import open_table
 from gearidae.scene.tables import MOST_KNOTS
 from gearidae.scene.text_table import column_of, listed, split_unit
 
-_KEYS: Final = ("file", "data", "knots", "packed", "time", "value", "interpolation")
+_KEYS: Final = ("file", "data", "knots", "packed", "time", "value", "interpolation", "repeat", "after")
+_CHOICES: Final = {"interpolation": ("linear", "cubic"), "after": ("chain", "run")}
 _SOURCES: Final = ("file", "data", "knots", "packed")
 _LARGEST: Final = 50_000_000  # bytes of a file
 
 
-def read_schedule(value: object, unit: str) -> tuple[object, str]:
-    """Turn whatever stands for a schedule into pairs and the interpolation between them.
+def read_schedule(value: object, unit: str) -> tuple[object, dict[str, Any]]:
+    """Turn whatever stands for a schedule into pairs, and what else it says of them.
 
     Parameters
     ----------
@@ -44,7 +47,8 @@ def read_schedule(value: object, unit: str) -> tuple[object, str]:
     -------
     pairs : object
         [time, value] pairs, what they hold is still to be checked.
-    interpolation : str
+    settings : dict
+        ``interpolation``, ``repeat`` and ``after`` as far as they are given; ``repeat`` is still to be checked.
 
     Raises
     ------
@@ -54,26 +58,28 @@ def read_schedule(value: object, unit: str) -> tuple[object, str]:
     if hasattr(value, "columns") and hasattr(value, "iloc"):
         value = {"data": value}
     if not isinstance(value, Mapping):
-        return value, str(getattr(value, "interpolation", "linear"))
+        settings = getattr(value, "settings", dict)
+        return value, settings()
     if not value:
-        return value, "linear"
+        return value, {}
     for key in value:
         if key not in _KEYS:
             raise ValueError(f"unknown key {str(key)[:40]!r}; a schedule's table has {', '.join(_KEYS)}")
-    interpolation = value.get("interpolation", "linear")
-    if interpolation not in ("linear", "cubic"):
-        raise ValueError(f"interpolation {str(interpolation)[:40]!r} must be 'linear' or 'cubic'")
+    for key, words in _CHOICES.items():
+        if value.get(key, words[0]) not in words:
+            raise ValueError(f"{key} {str(value[key])[:40]!r} must be {' or '.join(map(repr, words))}")
+    settings = {key: value[key] for key in (*_CHOICES, "repeat") if key in value}
     sources = [key for key in _SOURCES if key in value]
     if len(sources) > 1:
         raise ValueError(f"has {' and '.join(sources)}; one of them is enough")
     if "packed" in value:
-        return unpack_knots(value["packed"]), interpolation
+        return unpack_knots(value["packed"]), settings
     if "knots" in value:
-        return value["knots"], interpolation
+        return value["knots"], settings
     times, values = _columns(value, sources[0] if sources else "", ("s", unit))
     if len(times) != len(values):
         raise ValueError(f"time has {len(times)} rows and value {len(values)}: they must be as many")
-    return np.column_stack([times, values]).tolist(), interpolation
+    return np.column_stack([times, values]).tolist(), settings
 
 
 def in_folder(table: object, folder: Path) -> object:

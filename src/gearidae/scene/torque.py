@@ -24,7 +24,9 @@ from gearidae.scene.tables import increasing, one_or_more, pairs
 from gearidae.scene.units import to_si
 from gearidae.torques import Parameter, torque_law, torque_names
 
-_SCHEDULE = "torque over time, added to the constant: [time, torque] knots, or a table with columns"
+_SCHEDULE = (
+    "torque over time, added to the constant: [time, torque] knots, or a table with columns; repeat, after"
+)
 
 
 class Harmonic(Group):

@@ -36,7 +36,7 @@ def _largest(shaft: Drive | Load, speed: float, duration: float) -> float:
 
 def _largest_held(scene: GearScene, speed: float, ratio: float) -> float:
     """Bound of the torque [N m] that holds a speed: of the first difference, and to carry both gears along."""
-    knots = np.array(scene.drive.speed_knots())
+    knots = np.array(scene.drive.speed_knots().cycle())
     inertia = scene.gears.pinion_inertia + scene.gears.gear_inertia / ratio**2
     slopes = np.abs(np.diff(knots[:, 1]) / np.diff(knots[:, 0]))
     most = scene.drive.speed_gain * float(np.ptp(knots[:, 1]))
@@ -100,12 +100,13 @@ def add_torques(s: Record, tables: Tables, scene: GearScene, begin: float) -> No
         fastest = max([fastest, *(frequency for _, frequency, _ in harmonics)])
     speed = float(s.length_unit) / tau / float(s.pinion_radius)
     schedules = (
-        (DRIVE, scene.drive.schedule, force * float(s.pinion_radius)),
-        (LOAD, scene.load.schedule, force * float(s.gear_radius)),
-        (SPEED, scene.drive.speed_knots(), speed),
+        (DRIVE, "drive.schedule", scene.drive.schedule, force * float(s.pinion_radius)),
+        (LOAD, "load.schedule", scene.load.schedule, force * float(s.gear_radius)),
+        (SPEED, "drive.speed", scene.drive.speed_knots(), speed),
     )
-    for which, schedule, unit in schedules:
-        knots |= _add_schedule(s, tables, which, schedule, unit)
+    for which, key, schedule, unit in schedules:
+        known = schedule.during(begin, begin + scene.run.duration, key)
+        knots |= _add_schedule(s, tables, which, known, unit)
         if s.schedule[which].cubic:
             omega = fastest_schedule(s.schedule[which], tables.whole(), 0.0)
             fastest = max(fastest, omega / (2.0 * math.pi * tau))
