@@ -6,6 +6,8 @@ cut in two and continued is the whole run. Each of these holds for any torque an
 needs no reference solution.
 """
 
+import math
+
 import numpy as np
 import pytest
 
@@ -28,6 +30,43 @@ SLOW = gd.Scene.from_dict(
         "run": {"duration": 1.2},
     }
 )
+
+
+def poles(t, angle, speed, p):
+    """A motor whose poles are felt, and that gives less the faster it turns."""
+    return p[0] * math.cos(7.0 * angle) - p[1] * speed
+
+
+def sectors(t, angle, speed, p):
+    return p[0] if math.cos(p[1] * angle) > 0.0 else 0.0
+
+
+def sector_ends(t, angle, speed, p):
+    return math.cos(p[1] * angle)
+
+
+def pulses(t, speed, p):
+    return p[0] if t % p[1] < p[1] / 3.0 else 0.0
+
+
+def pulse_ends(p, t_end):
+    return [k * p[1] / 3.0 for k in range(1, math.ceil(3.0 * t_end / p[1])) if k % 3 < 2]
+
+
+LAWS = {
+    "drawn_poles": (poles, ("torque", "slope"), {}),
+    "drawn_sectors": (sectors, ("torque", "order"), {"switch": sector_ends}),
+    "drawn_pulses": (pulses, ("torque", "period"), {"knots": pulse_ends}),
+}
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _registered():
+    for name, (function, parameters, declared) in LAWS.items():
+        gd.register_torque(name, parameters=parameters, **declared)(function)
+    yield
+    for name in LAWS:
+        gd.unregister_torque(name)
 
 
 def drawn(seed):
@@ -58,7 +97,34 @@ def drawn(seed):
         changes["mesh.static_error"] = [{"order": 19, "amplitude": 1e-9, "phase": 0.3}]
     if rng.random() < 0.3:
         changes |= {"gears.hub_friction": 0.2, "gears.pinion_hub_radius": 3e-6, "gears.gear_hub_radius": 6e-6}
+    if rng.random() < 0.3:
+        changes |= {"contact.friction": float(rng.uniform(0.05, 0.3)), "coating.friction": 0.1}
+    if rng.random() < 0.5:
+        changes |= _law(rng, scene)
     return scene.replace(changes)
+
+
+def _law(rng, scene):
+    """A registered law on either shaft, or a microengine with its pin, of the size of the torques."""
+    torque, duration = scene.drive.torque, scene.run.duration
+    ratio = scene.gears.gear_teeth / scene.gears.pinion_teeth
+    turned = max(scene.initial.gear_speed * ratio, 1.0)
+    kind = str(rng.choice(["drawn_poles", "drawn_sectors", "drawn_pulses", "microengine"]))
+    if kind == "microengine":
+        engine = {"name": kind, "radius": 1e-5, "force": torque / 1e-5, "phase": -0.9}
+        frequency = turned / (2.0 * math.pi)
+        return {
+            "drive.law": engine | {"frequency": frequency},
+            "drive.pin_radius": 1.25e-6,
+            "drive.pin_friction": 0.3,
+        }
+    law = {
+        "drawn_poles": {"torque": 0.5 * torque, "slope": 0.2 * torque / turned},
+        "drawn_sectors": {"torque": 0.6 * torque, "order": 20.0 / (turned * duration)},
+        "drawn_pulses": {"torque": 0.6 * torque, "period": duration / float(rng.uniform(2.0, 5.0))},
+    }[kind]
+    shaft = "load" if rng.random() < 0.3 and kind != "drawn_poles" else "drive"
+    return {f"{shaft}.law": {"name": kind, **law}}
 
 
 def _fast(rng):
@@ -120,8 +186,11 @@ def _opposes(scene, ds):
 
 
 def _changes_by_torques(scene, ds):
-    """``n I1 w1 + I2 w2``, with the force of the tip relief on the gear alone; hubs have torques of their own."""
-    if scene.gears.hub_friction > 0.0:
+    """``n I1 w1 + I2 w2``, with the force of the tip relief on the gear alone; hubs and pins have torques of their own.
+
+    Friction of the flanks is another force at the teeth, which has other levers on both gears.
+    """
+    if scene.gears.hub_friction > 0.0 or scene.drive.pin_friction or scene.contact.friction > 0.0:
         return
     pinion, gear = scene.geometry.base_radius_pinion, scene.geometry.base_radius_gear
     momentum = (
