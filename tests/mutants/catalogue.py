@@ -211,15 +211,15 @@ MUTANTS = (
     Mutant(
         "dry resistance that pushes a gear that turns backwards",
         "engine/motion/shafts.py",
-        "+ m.state.slip * dry_force(m, t, y)",
-        "+ dry_force(m, t, y)",
+        "return m.state.slip * dry_force(m, t, y)",
+        "return dry_force(m, t, y)",
         ("properties/test_engine_symmetries.py",),
     ),
     Mutant(
         "dry resistance that holds twice as much as it should",
         "engine/friction/forces.py",
-        "return max(torque_force(m, LOAD, t, torque_angle(m, LOAD, y[U]",
-        "return 2.0 * max(torque_force(m, LOAD, t, torque_angle(m, LOAD, y[U]",
+        "return max(driving_force(m, LOAD, t, torque_angle(m, LOAD, y[U]",
+        "return 2.0 * max(driving_force(m, LOAD, t, torque_angle(m, LOAD, y[U]",
         ("properties/test_event_times.py",),
     ),
     Mutant(
