@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from gearidae.scene import load_case as load_case
     from gearidae.scene import preset as preset
     from gearidae.scene.combinations import combinations as combinations
+    from gearidae.scene.pitch_errors import pitch_errors as pitch_errors
     from gearidae.studies.products import open as open  # noqa: A004
     from gearidae.surfaces import surface_from as surface_from
     from gearidae.testing.comparison import compare as compare

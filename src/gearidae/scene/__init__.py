@@ -3,7 +3,7 @@
 from gearidae.scene.case import load_case
 from gearidae.scene.coating import MATERIAL_NAMES, Coating, Material
 from gearidae.scene.dump import dump_case, dump_keys
-from gearidae.scene.gears import Gears, Mesh, StaticErrorHarmonic
+from gearidae.scene.gears import Gears, Mesh, Runout, StaticErrorHarmonic
 from gearidae.scene.keys import KeyInfo
 from gearidae.scene.knots import Knots
 from gearidae.scene.presets import PRESETS, preset
@@ -41,6 +41,7 @@ __all__ = [
     "Roller",
     "RollerScene",
     "Run",
+    "Runout",
     "Scene",
     "Shaft",
     "StaticErrorHarmonic",

@@ -63,10 +63,10 @@ def _unquoted(text: str, error: ValueError) -> str:
 
 def _find_files(data: dict[str, object], folder: Path) -> None:
     """Let files that schedules and lists name lie beside the case file."""
-    for name in ("drive", "load", "contact"):
+    for name in ("drive", "load", "contact", "mesh"):
         table = data.get(name)
         if isinstance(table, dict):
-            for key in ("schedule", "speed", "asperities"):
+            for key in ("schedule", "speed", "asperities", "pinion_pitch_error", "gear_pitch_error"):
                 if key in table:
                     table[key] = in_folder(table[key], folder)
 

@@ -14,6 +14,7 @@ from gearidae.errors import SceneError
 from gearidae.scene.friction import has_flank_friction
 from gearidae.scene.joints import joints
 from gearidae.scene.keys import scene_value
+from gearidae.scene.pitch_errors import has_pitch_errors
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -68,6 +69,11 @@ FEATURES: Final = {
     ),
     "static error": Feature(
         "mesh.static_error", lambda scene: scene.mesh is not None and bool(scene.mesh.static_error)
+    ),
+    "pitch errors": Feature("mesh.pitch_error_rms", has_pitch_errors),
+    "runout": Feature(
+        "mesh.gear_runout",
+        lambda scene: scene.mesh is not None and bool(scene.mesh.pinion_runout or scene.mesh.gear_runout),
     ),
     "mesh damping": Feature(
         "mesh.damping", lambda scene: scene.mesh is not None and scene.mesh.damping > 0.0

@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 
 from gearidae.errors import SceneError
 from gearidae.scene.group import Group, shorten
+from gearidae.scene.pitch_errors import PitchErrors
 from gearidae.scene.quantity import Count, Phase, Quantity, Switch
 from gearidae.scene.surface import AgeingTime, Friction, FrictionRise, MemoryLength
 from gearidae.scene.tables import one_or_more
@@ -157,6 +158,17 @@ class StaticErrorHarmonic(Group):
     phase: Phase = Field(default=0.0, description="phase")
 
 
+class Runout(Group):
+    """Runout of a gear, ``amplitude cos(angle + phase)`` with the angle of its own shaft."""
+
+    amplitude: Annotated[float, Quantity(unit="m", at_least=-1, at_most=1, shown=("nm", -9))] = Field(
+        description="amplitude along the line of action"
+    )
+    phase: Phase = Field(
+        default=0.0, description="phase; the angle is 0 where pair 0 enters the path of contact"
+    )
+
+
 class Mesh(Group):
     """How the teeth meet along the line of action."""
 
@@ -180,6 +192,28 @@ class Mesh(Group):
     )
     static_error: Annotated[tuple[StaticErrorHarmonic, ...], one_or_more("order, amplitude, phase")] = Field(
         default=(), description="harmonics of the static transmission error, a list of tables"
+    )
+    pinion_pitch_error: PitchErrors = Field(
+        default=(),
+        description="errors of the pinion's teeth: how far each stands back from its drive flank; a list or a file",
+    )
+    gear_pitch_error: PitchErrors = Field(default=(), description="the same of the gear's teeth")
+    pitch_error_rms: Annotated[
+        float, Quantity(unit="m", at_least=0, at_most=1, least=1e-15, shown=("nm", -9))
+    ] = Field(
+        default=0.0,
+        description="rms of the sum of the errors of two teeth that meet, in place of lists: both gears' are drawn",
+    )
+    pitch_error_seed: Annotated[int, Count(at_least=0, at_most=2**53)] = Field(
+        default=0, description="which gears of this kind the errors are drawn as"
+    )
+    pinion_runout: Runout | None = Field(
+        default=None,
+        description="runout of the pinion, counted with its angle from where pair 0 enters the path of contact",
+    )
+    gear_runout: Runout | None = Field(
+        default=None,
+        description="runout of the gear, counted with its own angle from where pair 0 enters the path of contact",
     )
     radius_force: Switch = Field(
         default=True,

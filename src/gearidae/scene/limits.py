@@ -11,6 +11,7 @@ from gearidae.asperities.ranges import GAP_LOW
 from gearidae.asperities.ranges import check_reach as check_asperity_reach
 from gearidae.errors import SceneError
 from gearidae.scene.coating import THICKEST
+from gearidae.scene.pitch_errors import errors_range
 
 if TYPE_CHECKING:
     from gearidae.scene.scene import GearScene, Scene
@@ -66,7 +67,8 @@ def pairs_within_reach(scene: GearScene, cutoff: float) -> float:
 
     A pair at a distance of d base pitches from the path of contact has its gap opened by ``d^2 pb^2 / (2 rho)``. Where
     the flanks overlap by as much as is tabulated, the pair touches as long as that is less than the cut-off and the
-    overlap together: ``d = sqrt(2 (cutoff - gap_low) rho sigma) / pb``, on either side of the path.
+    overlap together: ``d = sqrt(2 (cutoff - gap_low) rho sigma) / pb``, on either side of the path. Pitch errors add by
+    how much pairs differ: a tooth that stands out touches before it enters.
 
     Parameters
     ----------
@@ -82,7 +84,12 @@ def pairs_within_reach(scene: GearScene, cutoff: float) -> float:
     """
     geometry = scene.geometry
     relief = geometry.base_pitch**2 / (scene.mesh.tip_relief_radius * scene.surface.roughness)
-    return geometry.contact_ratio + 2.0 * math.sqrt(2.0 * max(cutoff - GAP_LOW, 0.0) / relief)
+    return geometry.contact_ratio + 2.0 * math.sqrt(2.0 * relief_in_reach(scene, cutoff) / relief)
+
+
+def relief_in_reach(scene: GearScene, cutoff: float) -> float:
+    """Tip relief, in roughnesses, by which a pair may be apart more than another that overlaps, and still touch."""
+    return max(cutoff - GAP_LOW, 0.0) + errors_range(scene) / scene.surface.roughness
 
 
 def check_reach(scene: GearScene, cutoff: float = 0.0) -> None:

@@ -25,6 +25,7 @@ from gearidae.scene.limits import (
     check_thickness,
 )
 from gearidae.scene.named_tables import NAME, NamedTables
+from gearidae.scene.pitch_errors import check_pitch_errors, error_on_path
 from gearidae.scene.roughnesses import InRoughnesses
 from gearidae.scene.run import Initial, Roller, Run
 from gearidae.scene.schema import json_schema
@@ -47,6 +48,8 @@ _NOTHING_IF_EMPTY = (
     ("coating", "pinion_table"),
     ("coating", "gear_table"),
     ("contact", "asperities"),
+    ("mesh", "pinion_pitch_error"),
+    ("mesh", "gear_pitch_error"),
 )
 _DEEPEST_OVERLAP = 8.0  # rms roughnesses that the mean planes may overlap at the start
 
@@ -369,19 +372,15 @@ class GearScene(Scene):
         if mesh.backlash >= geometry.base_pitch / 2:
             allowed = f"must be below half a base pitch, {geometry.base_pitch / 2:.4g} m"
             raise SceneError("mesh.backlash", mesh.backlash, allowed)
-        slope = sum(abs(harmonic.order * harmonic.amplitude) for harmonic in mesh.static_error)
-        if slope >= gears.pinion_base_radius:
-            raise SceneError(
-                "mesh.static_error",
-                f"(slope {slope:.4g} m/rad)",
-                f"orders times amplitudes must add up to less than R1, {gears.pinion_base_radius:g} m",
-            )
+        self._check_errors()
         overlap = _DEEPEST_OVERLAP * self.surface.roughness
-        if not -overlap <= self.initial.gap <= mesh.backlash + overlap:
+        room = mesh.backlash + sum(error_on_path(self, coast=coast) for coast in (False, True))
+        most = room + overlap
+        if not -overlap <= self.initial.gap <= most:
             raise SceneError(
                 "initial.gap",
                 self.initial.gap,
-                f"must lie in {-overlap:.4g}..{mesh.backlash + overlap:.4g} m, or flanks would overlap",
+                f"must lie in {-overlap:.4g}..{most:.4g} m, or flanks would overlap",
             )
         if gears.pinion_teeth * self.run.exposures > _MOST_PLACES:
             raise SceneError(
@@ -394,6 +393,28 @@ class GearScene(Scene):
         check_population(self)
         check_friction(self)
         check_joints(self)
+
+    def _check_errors(self) -> None:
+        """Refuse errors of the mesh that would turn a shaft back, or jam the teeth."""
+        mesh, geometry = self.mesh, self.geometry
+        slope = sum(abs(harmonic.order * harmonic.amplitude) for harmonic in mesh.static_error)
+        for key, runout, radius, name in (
+            ("mesh.pinion_runout", mesh.pinion_runout, geometry.base_radius_pinion, "R1"),
+            ("mesh.gear_runout", mesh.gear_runout, geometry.base_radius_gear, "R2"),
+        ):
+            if runout is not None and abs(runout.amplitude) >= radius:
+                raise SceneError(
+                    f"{key}.amplitude", runout.amplitude, f"must be below {name}, {radius:g} m, in size"
+                )
+        slope += 0.0 if mesh.pinion_runout is None else abs(mesh.pinion_runout.amplitude)
+        if slope >= geometry.base_radius_pinion:
+            raise SceneError(
+                "mesh.static_error",
+                f"(slope {slope:.4g} m/rad)",
+                f"orders times amplitudes must add up to less than R1, {geometry.base_radius_pinion:g} m, with the"
+                " pinion's runout",
+            )
+        check_pitch_errors(self)
 
 
 def _shafts(scene: Scene) -> NamedTables[Shaft]:

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from gearidae.compiled import compiled
-from gearidae.engine.model.state import PHASE, Floats, Model, U, V, W
-from gearidae.engine.pairs.tooth_pairs import static_error
+from gearidae.engine.model.state import Floats, Model, W
+from gearidae.engine.pairs.mesh_error import pinion_speed
 
 
 @compiled
 def kinetic_energy(m: Model, y: Floats) -> float:
     """Kinetic energy of both gears, scaled."""
-    pinion = y[V] + y[W]
-    if m.scene.error_count != 0:
-        pinion /= 1.0 - static_error(m, y[U], y[PHASE])[2]
-    return energy_of_speeds(m, pinion, y[W])
+    return energy_of_speeds(m, pinion_speed(m, y)[0], y[W])
 
 
 @compiled(inline=True)

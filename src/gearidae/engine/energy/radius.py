@@ -30,7 +30,7 @@ from gearidae.engine.pairs.coverage import (
 )
 from gearidae.engine.pairs.lengths import length_and_rates, slopes_along_path, weighed_length
 from gearidae.engine.pairs.pair_force import NO_PAIR_FORCE, PairForce, of_path
-from gearidae.engine.pairs.tooth_pairs import PairState, flank_of_history, is_on_path, list_known, nearest_gap
+from gearidae.engine.pairs.tooth_pairs import PairState, flank_of_history, is_on_path, list_known, path_gap
 
 
 @compiled
@@ -42,7 +42,7 @@ def radius_power(m: Model, t: float, y: Floats, w_rate: float) -> tuple[float, f
     for i in range(list_known(m, y)):
         k = m.work.known[i]
         coast, pair = flank_of_history(m, k), m.state.history[k].pair
-        gap = nearest_gap(m, coast, y)
+        gap = path_gap(m, coast, pair, y)
         if gap < m.scene.cutoff and is_on_path(m, coast, pair):
             more, change = _pair_power(m, coast, pair, k, gap, t, y, w_rate)
             power += more

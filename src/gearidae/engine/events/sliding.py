@@ -29,7 +29,8 @@ from gearidae.engine.model.record_types import (
     STUCK,
 )
 from gearidae.engine.model.state import Floats, Model, Record, V, W
-from gearidae.engine.motion.shafts import forces_at_shafts, pinion_speed
+from gearidae.engine.motion.shafts import forces_at_shafts
+from gearidae.engine.pairs.mesh_error import pinion_speed, rate_of
 
 STILL: Final = 1e-10
 """Speed over sigma/tau by which sliding reverses before that counts, so that an element just let go waits for it."""
@@ -260,7 +261,7 @@ def _decide(m: Model, t: float, y: Floats, kind: int, history: int) -> None:
     """Decide on an element that has come to rest, or is held no longer."""
     state, a1, a2 = m.state, m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass
     state.reversals += 1
-    turn, e1 = pinion_speed(m, y)
+    turn, error = pinion_speed(m, y)
     first, second = _levers_of(m, kind, history)
     excess = (first * turn + second * y[W]) / (a1 * first**2 + a2 * second**2)
     turn -= a1 * first * excess
@@ -274,7 +275,7 @@ def _decide(m: Model, t: float, y: Floats, kind: int, history: int) -> None:
     if stops and (fastest == 0.0 or state.hold != FREE or _rests(m, t, y)):
         _decide_at_rest(m, t, y)
         return
-    y[W], y[V] = w, turn * (1.0 - e1) - w
+    y[W], y[V] = w, rate_of(error, turn, w)
     if state.hold != FREE and not let_go:
         _set_slip(m, state.hold, state.held_pair, 1.0)  # it has the same levers
     state.hold, state.held_pair = kind, history

@@ -19,8 +19,8 @@ from gearidae.engine.events.stops import next_stop
 from gearidae.engine.model.record_types import AT_REST, FREE, HELD_GEAR
 from gearidae.engine.model.state import DRIVE, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
+from gearidae.engine.pairs.mesh_error import error_at
 from gearidae.engine.pairs.shaft_angle import torque_angle
-from gearidae.engine.pairs.tooth_pairs import static_error
 from gearidae.laws.shafts import driving_force, is_steady
 
 _PASSES: Final = 2
@@ -79,9 +79,7 @@ def _settle(m: Model, t: float, y: Floats) -> bool:
 def _step_to_equilibrium(m: Model, t: float, y: Floats, v: float) -> float:
     """Newton step of a stopped pinion that has moved at `v`; infinite without an equilibrium that draws it back."""
     mesh = forces_at(m, t, y)
-    share = 1.0
-    if m.scene.error_count != 0:
-        share -= static_error(m, y[U], y[PHASE])[2]
+    share = 1.0 - error_at(m, y[U], y[PHASE]).pinion
     push = driving_force(m, DRIVE, t, torque_angle(m, DRIVE, y[U], y[PHASE]), 0.0) - share * mesh.force
     if mesh.force_u > 0.0:
         return push / (share * mesh.force_u)

@@ -9,8 +9,9 @@ import numpy as np
 from gearidae.compiled import compiled
 from gearidae.engine.elastic.nodes import node_rates
 from gearidae.engine.events.mesh_marks import relief_step
-from gearidae.engine.model.state import EMPTY, PHASE, Floats, Model, V, W
+from gearidae.engine.model.state import EMPTY, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.residual import residual
+from gearidae.engine.pairs.mesh_error import error_at
 from gearidae.engine.pairs.tooth_pairs import in_flight, nearest_gap
 
 PHASE_HIGH = 16.0
@@ -28,7 +29,7 @@ def set_rates(m: Model, t: float, y: Floats, yp: Floats) -> None:
     residual(m, t, y, yp, out)
     for i in range(y.size):
         yp[i] = -out[i]
-    yp[V] -= yp[W]
+    yp[V] -= (1.0 + error_at(m, y[U], y[PHASE]).gear) * yp[W]
     if m.scene.nodes > 0:
         node_rates(m, yp)
 

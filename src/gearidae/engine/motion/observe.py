@@ -15,6 +15,7 @@ from gearidae.engine.model.record_types import FREE
 from gearidae.engine.model.state import COAST, DRIVE, GEARS, LOAD, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
 from gearidae.engine.motion.shafts import friction_at_gear, resisting_force
+from gearidae.engine.pairs.mesh_error import error_at, turn_of
 from gearidae.engine.pairs.shaft_angle import angle_of_shaft, torque_angle
 from gearidae.engine.pairs.tooth_pairs import (
     all_pairs,
@@ -22,7 +23,6 @@ from gearidae.engine.pairs.tooth_pairs import (
     history_of,
     pair_at,
     pair_gap,
-    static_error,
 )
 from gearidae.engine.population.forces import asperities_joined
 from gearidae.laws.shafts import driving_force
@@ -58,16 +58,14 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
             row[ROLLER.min_separation] = separation(m, y) * length
         return
     phase, w = y[PHASE], y[W]
-    e1 = 0.0
-    if m.scene.error_count != 0:
-        _, _, e1, _ = static_error(m, u, phase)
-    radius = m.scene.gear_radius
+    e = error_at(m, u, phase)
+    turn, radius = turn_of(e, v, w), m.scene.gear_radius
     row[GEAR.gear_speed] = w * speed / radius
-    row[GEAR.pinion_speed] = (v + w) * speed / (m.scene.pinion_radius * (1.0 - e1))
+    row[GEAR.pinion_speed] = turn * speed / m.scene.pinion_radius
     row[GEAR.gear_angle] = angle_of_shaft(m, LOAD, u, phase)
     row[GEAR.transmission_error] = u * length
     row[GEAR.mesh_force] = force * m.scene.force_unit
-    contact, width = force + mesh.relief, row.size
+    contact, width = (1.0 + e.gear) * force + mesh.relief, row.size
     if m.scene.friction.rubs != 0:
         friction, resistance, loads = friction_at_gear(m, t, y)
         contact += friction
@@ -90,7 +88,7 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
         touching += gap < m.scene.contact_gap
     row[GEAR.drive_gap], row[GEAR.coast_gap] = drive_gap * length, coast_gap * length
     row[GEAR.pairs_in_contact] = touching
-    turn, unit = (v + w) / (1.0 - e1), m.scene.force_unit
+    unit = m.scene.force_unit
     drive = driving_force(m, DRIVE, t, torque_angle(m, DRIVE, u, phase), turn)
     row[GEAR.drive_torque] = drive * unit * m.scene.pinion_radius
     row[GEAR.load_torque] = resistance * unit * radius
@@ -140,4 +138,4 @@ def separation(m: Model, y: Floats) -> float:
 @compiled
 def rigid_separation(m: Model, u: float) -> float:
     """Distance of the nearer flank of pairs on the path of contact."""
-    return min(m.scene.clearance[DRIVE] - u, m.scene.clearance[COAST] + u)
+    return min(m.scene.nearest[DRIVE] - u, m.scene.nearest[COAST] + u)

@@ -19,9 +19,9 @@ from gearidae.engine.friction.pairs import direction, levers, set_limits
 from gearidae.engine.model.record_types import AT_REST, FREE, HELD_GEAR, HELD_PAIR
 from gearidae.engine.model.state import DRIVE, LOAD, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
+from gearidae.engine.pairs.mesh_error import MeshError, error_at, turn_of
 from gearidae.engine.pairs.pair_force import MeshForces
 from gearidae.engine.pairs.shaft_angle import torque_angle
-from gearidae.engine.pairs.tooth_pairs import static_error
 from gearidae.laws.shafts import by_speed, driving_force
 
 name_type(Slopes(*(0.0,) * 11), "Slopes")
@@ -36,36 +36,24 @@ class Shafts(NamedTuple):
         Surface velocity of the pinion.
     pinion, gear : float
         Forces at the base circles.
-    e1, e2 : float
-        Derivatives of the static error, as `static_error` has them.
+    error : MeshError
+        Of the mesh.
     """
 
     turn: float
     pinion: float
     gear: float
-    e1: float
-    e2: float
+    error: MeshError
 
 
 @compiled(inline=True)
 def shafts_at(m: Model, t: float, y: Floats, mesh: MeshForces) -> Shafts:
     """Put the forces of the mesh, its damping and the torques on the pinion on both shafts."""
     force = mesh.force + m.scene.damping * y[V]
-    turn, e1, e2 = y[V] + y[W], 0.0, 0.0
-    if m.scene.error_count != 0:
-        _, _, e1, e2 = static_error(m, y[U], y[PHASE])
-        turn /= 1.0 - e1
+    e = error_at(m, y[U], y[PHASE])
+    turn = turn_of(e, y[V], y[W])
     drive = driving_force(m, DRIVE, t, torque_angle(m, DRIVE, y[U], y[PHASE]), turn)
-    return Shafts(turn, drive - (1.0 - e1) * force, force + mesh.relief, e1, e2)
-
-
-@compiled
-def pinion_speed(m: Model, y: Floats) -> tuple[float, float]:
-    """Surface velocity of the pinion, and the slope of the static error."""
-    if m.scene.error_count == 0:
-        return y[V] + y[W], 0.0
-    e1 = static_error(m, y[U], y[PHASE])[2]
-    return (y[V] + y[W]) / (1.0 - e1), e1
+    return Shafts(turn, drive - (1.0 - e.pinion) * force, (1.0 + e.gear) * force + mesh.relief, e)
 
 
 @compiled

@@ -22,8 +22,8 @@ from gearidae.engine.pairs.tooth_pairs import (
     flank_of_history,
     is_on_path,
     list_known,
-    nearest_gap,
     pairs_on_path,
+    path_gap,
 )
 from gearidae.formulas.quadrature import integral
 
@@ -100,7 +100,7 @@ def _follow_pairs(m: Model, span: float, y: Floats, w_rate: float) -> None:
     for i in range(list_known(m, y)):
         k = m.work.known[i]
         coast, h = flank_of_history(m, k), m.state.history[k]
-        gap = nearest_gap(m, coast, y)
+        gap = path_gap(m, coast, h.pair, y)
         if h.direction >= 0.0 or gap >= m.scene.cutoff or not is_on_path(m, coast, h.pair):
             continue
         power = rate = 0.0

@@ -43,6 +43,7 @@ from gearidae.engine.events.pair_events import newly_stretched
 from gearidae.engine.events.sliding import dry_guard
 from gearidae.engine.model.state import DRIVE, LOAD, MATERIALS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.observers.adhesion_loss import joining_lag
+from gearidae.engine.pairs.mesh_error import error_at, pinion_acceleration, turn_of
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.pairs.squeeze_film import film_loss
 from gearidae.engine.pairs.tooth_pairs import (
@@ -50,7 +51,6 @@ from gearidae.engine.pairs.tooth_pairs import (
     gap_and_rate,
     in_flight,
     list_known,
-    static_error,
 )
 from gearidae.formulas.quadrature import (
     Ends,
@@ -362,14 +362,9 @@ def _torque_slopes(m: Model, t: float, y: Floats) -> float:
 @compiled
 def _pinion(m: Model, y: Floats, yp: Floats) -> tuple[float, float, float]:
     """Travel of the pinion's base circle, its rate and the rate of that."""
-    travel = y[U] + y[PHASE] / m.scene.phase_rate
-    speed, acceleration = y[V] + y[W], yp[V] + yp[W]
-    if m.scene.error_count != 0:
-        _, e, e1, e2 = static_error(m, y[U], y[PHASE])
-        travel += e
-        speed /= 1.0 - e1
-        acceleration = (acceleration + e2 * speed * speed) / (1.0 - e1)
-    return travel, speed, acceleration
+    e = error_at(m, y[U], y[PHASE])
+    travel, speed = y[U] + y[PHASE] / m.scene.phase_rate + e.value, turn_of(e, y[V], y[W])
+    return travel, speed, pinion_acceleration(e, speed, y[W], yp[V], yp[W])
 
 
 @compiled

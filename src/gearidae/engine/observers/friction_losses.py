@@ -28,7 +28,8 @@ from gearidae.engine.observers.exposures.friction_work import (
     keeps_friction_work,
     note_power,
 )
-from gearidae.engine.pairs.tooth_pairs import flank_of_history, static_error
+from gearidae.engine.pairs.mesh_error import bend_of, error_at
+from gearidae.engine.pairs.tooth_pairs import flank_of_history
 from gearidae.formulas.quadrature import error_estimate, integral, integral_with_middle
 
 _POWERS: Final = 8
@@ -149,8 +150,8 @@ def _loads_ahead(m: Model, t: float, y: Floats) -> Loads:
     if m.scene.nodes > 0:
         follow_slopes(m, t, y, _AHEAD, later)
     later[U] = y[U] + _AHEAD * y[V]
-    e1, e2 = static_error(m, y[U], y[PHASE])[2:] if m.scene.error_count != 0 else (0.0, 0.0)
-    later[V] = y[V] + _AHEAD * ((1.0 - e1) * shafts.pinion - e2 * turn * turn - shafts.gear)
+    e = error_at(m, y[U], y[PHASE])
+    later[V] = y[V] + _AHEAD * bend_of(e, turn, y[W], shafts.pinion, shafts.gear)
     later[PHASE] = y[PHASE] + _AHEAD * m.scene.phase_rate * y[W]
     later[W] = y[W] + _AHEAD * shafts.gear
     turn, pinion, gear = forces_at_shafts(m, t + _AHEAD, later)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from gearidae.compiled import compiled
 from gearidae.engine.model.state import LOAD, Model
-from gearidae.engine.pairs.tooth_pairs import static_error
+from gearidae.engine.pairs.mesh_error import error_at
 
 
 @compiled
@@ -20,10 +20,7 @@ def angle_of_shaft(m: Model, shaft: int, u: float, phase: float) -> float:
     """
     travel = (m.state.turns + phase - m.state.first_place) / m.scene.phase_rate
     if shaft != LOAD:
-        travel += u - m.state.initial_lead
-        if m.scene.error_count != 0:
-            _, e, _, _ = static_error(m, u, phase)
-            travel += e
+        travel += u - m.state.initial_lead + error_at(m, u, phase).value
     return travel * m.scene.torque[shaft].angle_unit
 
 

@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from gearidae.compiled import compiled, compiled_once, name_type
+from gearidae.compiled import compiled, name_type
 from gearidae.contact.history import extreme_gap, joined_height
 from gearidae.contact.kernels.law import (
     B_PIECES,
@@ -24,16 +24,8 @@ from gearidae.contact.kernels.law import (
     set_branch,
     stretched_value,
 )
-from gearidae.engine.compiling import SOLVER
 from gearidae.engine.model.state import COAST, DRIVE, MATERIALS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.pairs.coverage import Shares, loading_of
-
-ANGLE_PHASE = 1e-9
-"""Error of the pinion's angle, as a phase of the static error's highest harmonic [rad], below which it is settled; far
-above what rounding leaves of an order of 1e5."""
-ANGLE_STEPS = 60
-"""Steps of Newton's method for it, at most."""
-
 
 # -- the walk over the pairs -----------------------------------------------------------------------------------------
 
@@ -209,12 +201,34 @@ def pair_gap(
     outside = along - inside
     toward = -v if not coast else v
     gap = s.clearance[coast] + (u if coast else -u)
+    if s.pitch_errors != 0:
+        gap += pitch_error(m, coast, pair)
     if outside == 0.0:
         return gap, toward, 0.0, inside
     slope = s.relief_slope * outside
     gap += 0.5 * s.relief_curvature * outside * outside
     turn = -w if coast else w
     return gap, toward + slope * turn, slope, inside
+
+
+@compiled(inline=True)
+def pitch_error(m: Model, coast: int, pair: int) -> float:
+    """By how much the teeth of a pair stand back, of a scene with pitch errors: it opens the gap of the pair.
+
+    A tooth that stands back from its drive flank is nearer with its back. The coast flank of a space of the pinion
+    belongs to the next tooth of the gear.
+    """
+    s, number = m.scene, int(pair + m.state.turns)
+    pinion = m.tables[s.pinion_errors_at + number % int(s.pinion_teeth)]
+    gear = m.tables[s.gear_errors_at + (number + coast) % int(s.gear_teeth)]
+    return -(pinion + gear) if coast else pinion + gear
+
+
+@compiled
+def path_gap(m: Model, coast: int, pair: int, y: Floats) -> float:
+    """Gap of a pair on the path of contact."""
+    gap = m.scene.clearance[coast] + (y[U] if coast else -y[U])
+    return gap + pitch_error(m, coast, pair) if m.scene.pitch_errors != 0 else gap
 
 
 @compiled
@@ -256,8 +270,8 @@ def contact_length(m: Model, inside: float) -> float:
 
 @compiled
 def nearest_gap(m: Model, coast: int, y: Floats) -> float:
-    """Gap of a pair on the path of contact, which no pair of this flank undercuts."""
-    return m.scene.clearance[coast] + (y[U] if coast else -y[U])
+    """Gap on the path of contact of the teeth that stand out farthest, which no pair of this flank undercuts."""
+    return m.scene.nearest[coast] + (y[U] if coast else -y[U])
 
 
 @compiled
@@ -352,41 +366,3 @@ def force_branch(m: Model, k: int, material: int) -> int:
 def energy_branch(m: Model, k: int, material: int) -> int:
     """Place of a material's branch of the stored energy there."""
     return m.scene.branches_at + (2 * MATERIALS * k + MATERIALS + material) * m.scene.branch_length
-
-
-@compiled_once(SOLVER)
-def static_error(m: Model, u: float, phase: float) -> tuple[float, float, float, float]:
-    """Pinion's angle, static transmission error e, and its first two derivatives over R1 and R1^2, scaled.
-
-    ``R1 phi1 - e(phi1) = u + R2 phi2`` is solved by Newton's method: e is small against R1. Four steps are enough where
-    e is smooth over its own size; a ripple of high order may take more.
-
-    Returns
-    -------
-    angle, e, e1, e2 : float
-        phi1 [rad], ``e / sigma``, ``e' / R1`` and ``e'' sigma / R1^2``.
-    """
-    s = m.scene
-    radius = s.pinion_radius / s.length_unit
-    turns = (m.state.turns % s.pinion_teeth + phase) / s.pinion_teeth
-    rigid = 2.0 * math.pi * turns + u / radius
-    angle = rigid
-    e = e1 = e2 = 0.0
-    count, first = s.error_count, s.error_at
-    steps, phase_step = 0, math.inf
-    while count and (steps < 4 or (phase_step > ANGLE_PHASE and steps < ANGLE_STEPS)):
-        steps += 1
-        e = e1 = e2 = highest = 0.0
-        for k in range(count):
-            order, amplitude = m.tables[first + 3 * k], m.tables[first + 3 * k + 1]
-            highest = max(highest, order)
-            shift = m.tables[first + 3 * k + 2]
-            c = amplitude * math.cos(order * angle + shift)
-            sine = amplitude * math.sin(order * angle + shift)
-            e += c
-            e1 -= order * sine / radius
-            e2 -= order * order * c / (radius * radius)
-        step = (angle - rigid - e / radius) / (1.0 - e1)
-        angle -= step
-        phase_step = highest * abs(step)  # e and its derivatives are those before the step
-    return angle, e, e1, e2

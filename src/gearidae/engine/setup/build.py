@@ -8,7 +8,6 @@ from operator import attrgetter
 
 import numpy as np
 
-from gearidae.contact.kernels.law import GAP_LOW
 from gearidae.engine.compiling import ELASTIC, EXPOSURES, FRICTION, POPULATION, SOLVER, make_part_ready
 from gearidae.engine.elastic.layout import DEPTH_HIGH, ContactBounds
 from gearidae.engine.elastic.rows import scratch_size
@@ -16,6 +15,7 @@ from gearidae.engine.events.histories import begin
 from gearidae.engine.events.mesh_marks import MARKS
 from gearidae.engine.model.scene_record import KEYED
 from gearidae.engine.model.state import (
+    COAST,
     DRIVE,
     GEARS,
     LOAD,
@@ -32,7 +32,8 @@ from gearidae.engine.model.state import (
 from gearidae.engine.motion.static_solve import settle_nodes
 from gearidae.engine.observers.balance import open_balance
 from gearidae.engine.observers.exposures.bins import ROWS
-from gearidae.engine.pairs.tooth_pairs import contact_length, static_error
+from gearidae.engine.pairs.mesh_error import error_at
+from gearidae.engine.pairs.tooth_pairs import contact_length
 from gearidae.engine.setup.build_contact import Nodes, add_attraction, add_contact, add_nodes, choose_model
 from gearidae.engine.setup.build_friction import add_friction
 from gearidae.engine.setup.build_population import add_population, population_rows
@@ -48,7 +49,8 @@ from gearidae.laws.shaft.schedule import (
 from gearidae.mesh.involute import Geometry
 from gearidae.scene import MATERIAL_NAMES, GearScene, RollerScene, Scene, require_gears
 from gearidae.scene.combinations import may_deflect
-from gearidae.scene.limits import check_reach, pairs_within_reach
+from gearidae.scene.limits import check_reach, pairs_within_reach, relief_in_reach
+from gearidae.scene.pitch_errors import error_on_path, errors_of_teeth, extreme_sums, has_pitch_errors
 from gearidae.scene.sampled import columns_of
 
 LIGHTER = 0.25
@@ -113,7 +115,8 @@ def _gear_problem(scene: GearScene, nodes: Nodes | None, begin: Start) -> Proble
     _set_units(s, scene)
     speed = sigma / float(s.time_unit)
     _set_geometry(s, geometry, mesh.tip_relief_radius)
-    s.clearance, s.marks = 0.5 * mesh.backlash / sigma, MARKS
+    s.clearance = s.nearest = 0.5 * mesh.backlash / sigma
+    s.marks = MARKS
     s.bins = scene.run.exposures
     s.bins_per_pitch = scene.run.exposures / float(s.contact_ratio)
     s.pitch_point = 0.5 * (float(s.coast_phase) - 0.5)
@@ -133,12 +136,13 @@ def _gear_problem(scene: GearScene, nodes: Nodes | None, begin: Start) -> Proble
     else:
         add_contact(s, tables, scene, gears.face_width, unit_length, widest)
     add_attraction(s, tables, scene, gears.face_width, unit_length, widest)
-    s.reach = math.sqrt(2.0 * (float(s.cutoff) - GAP_LOW) / float(s.relief_curvature))
+    s.reach = math.sqrt(2.0 * relief_in_reach(scene, float(s.cutoff)) / float(s.relief_curvature))
     add_friction(s, scene)
     _set_slots(s, scene)
     add_torques(s, tables, scene, begin.time)
     set_stop(s, scene, start.mesh_phase if begin.place is None else begin.place)
-    _add_static_error(s, tables, scene)
+    _add_errors(s, tables, scene)
+    _add_pitch_errors(s, tables, scene)
     add_nodes(s, tables, grid)
     # an error in the phase matters by the gap it opens where tip relief is steepest
     steepest = float(s.relief_curvature * s.reach)
@@ -154,11 +158,12 @@ def _gear_problem(scene: GearScene, nodes: Nodes | None, begin: Start) -> Proble
     whole, phase = divmod(start.mesh_phase, 1.0)  # the solver's phase stays small: whole pitches are turns
     outside = phase - min(phase, float(s.contact_ratio))
     relief = float(0.5 * s.relief_curvature * outside**2)
-    u = float(s.clearance[DRIVE]) + relief - start.gap / sigma
+    nearest = error_on_path(scene, coast=False)
+    u = float(s.clearance[DRIVE]) + relief - (start.gap - nearest) / sigma
     w = start.gear_speed * geometry.base_radius_gear / speed
     model.state.turns, model.state.first_place = whole, start.mesh_phase
     model.state.ageing.age[:] = start.rest_time / float(s.time_unit)
-    model.state.initial_lead = u + static_error(model, u, phase)[1]
+    model.state.initial_lead = u + error_at(model, u, phase).value
     skipped = {
         "static_error": int(not mesh.static_error),
         "harmonics": int(not drive.harmonic and not load.harmonic),
@@ -176,7 +181,8 @@ def _roller_problem(scene: RollerScene, nodes: Nodes | None, begin: Start) -> Pr
     s.time_unit, s.force_unit = sigma / abs(speed), roller.mass * speed**2 / sigma
     # the gear is held: its pair stays at one place, where its contact has the length 1, of a path without length
     s.pinion_inverse_mass = s.phase_rate = s.start_radius = 1.0
-    s.clearance, s.coast_phase = (0.0, math.inf), 0.25
+    s.clearance = s.nearest = (0.0, math.inf)
+    s.coast_phase = 0.25
     energy = 0.5 * roller.mass * roller.speed**2
     bounds = ContactBounds(roller.width, roller.radius, 1.0, 1.0, energy, energy, 0.0, roller.height / sigma)
     grid = choose_model(s, scene, bounds, nodes)
@@ -221,7 +227,7 @@ def _set_geometry(s: Record, geometry: Geometry, tip_relief_radius: float) -> No
     pitch, sigma = geometry.base_pitch, float(s.length_unit)
     s.base_pitch = pitch
     s.pinion_radius, s.gear_radius = geometry.base_radius_pinion, geometry.base_radius_gear
-    s.pinion_teeth = geometry.pinion_teeth
+    s.pinion_teeth, s.gear_teeth = geometry.pinion_teeth, geometry.gear_teeth
     s.phase_rate = sigma / pitch
     s.contact_ratio = geometry.contact_ratio
     s.coast_phase = 2.0 * geometry.approach / pitch + 0.5
@@ -257,17 +263,35 @@ def _set_slots(s: Record, scene: GearScene) -> None:
 # -- tables ----------------------------------------------------------------------------------------------------------
 
 
-def _add_static_error(s: Record, tables: Tables, scene: GearScene) -> None:
-    """Lay out the harmonics of the static transmission error."""
-    errors = scene.mesh.static_error
-    numbers = [x for h in errors for x in (h.order, h.amplitude / float(s.length_unit), h.phase)]
-    s.error_count, s.error_at = len(errors), tables.add(numbers)
-    order: float = max((h.order for h in errors), default=0)
+def _add_errors(s: Record, tables: Tables, scene: GearScene) -> None:
+    """Lay out the harmonics of the pinion's angle, static error and runout, and set the runout of the gear."""
+    mesh, sigma = scene.mesh, float(s.length_unit)
+    harmonics: list[tuple[float, float, float]] = [
+        (h.order, h.amplitude / sigma, h.phase) for h in mesh.static_error
+    ]
+    if mesh.pinion_runout is not None:
+        harmonics.append((1, mesh.pinion_runout.amplitude / sigma, mesh.pinion_runout.phase))
+    if mesh.gear_runout is not None:
+        s.gear_runout, s.gear_runout_phase = mesh.gear_runout.amplitude / sigma, mesh.gear_runout.phase
+    s.error_count, s.error_at = len(harmonics), tables.add([x for harmonic in harmonics for x in harmonic])
+    s.has_error = int(s.error_count > 0 or s.gear_runout != 0.0)
+    order = max((order for order, _, _ in harmonics), default=0)
     # two places of a table are half a period
     places = max(len(table[0]) for table in scene.coating.tables)
     if places > 1:
         order = max(order, 0.5 * places / float(s.contact_ratio) * float(s.pinion_teeth))
     s.mesh_omega = 2.0 * math.pi * max(1.0, order / float(s.pinion_teeth))
+
+
+def _add_pitch_errors(s: Record, tables: Tables, scene: GearScene) -> None:
+    """Lay out the errors of single teeth, and set the gaps of those that stand out farthest."""
+    if not has_pitch_errors(scene):
+        return
+    pinion, gear = errors_of_teeth(scene)
+    sigma, ((drive, _), (_, coast)) = float(s.length_unit), extreme_sums(scene)
+    s.pitch_errors = 1
+    s.pinion_errors_at, s.gear_errors_at = tables.add(pinion / sigma), tables.add(gear / sigma)
+    s.nearest = float(s.clearance[DRIVE]) + drive / sigma, float(s.clearance[COAST]) - coast / sigma
 
 
 # -- the start -------------------------------------------------------------------------------------------------------

@@ -15,8 +15,9 @@ from gearidae.compiled import compiled
 from gearidae.engine import adams
 from gearidae.engine.model.state import DRIVE, PHASE, Floats, Model, Record, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
+from gearidae.engine.pairs.mesh_error import error_at, pinion_acceleration, turn_of
 from gearidae.engine.pairs.shaft_angle import torque_angle
-from gearidae.engine.pairs.tooth_pairs import in_flight, static_error
+from gearidae.engine.pairs.tooth_pairs import in_flight
 from gearidae.formulas.interpolation import cubic, quintic, vertex
 from gearidae.laws.shafts import driving_force
 
@@ -40,15 +41,11 @@ def force_of_motion(m: Model, t: float, y: Floats, yp: Floats) -> float:
         return m.scene.damping * y[V]
     if m.scene.friction.rubs != 0:
         return _force_with_friction(m, t, y)
-    acceleration, turn = yp[V] + yp[W], y[V] + y[W]
-    angle = torque_angle(m, DRIVE, y[U], y[PHASE])
-    if m.scene.error_count == 0:
-        return driving_force(m, DRIVE, t, angle, turn) - acceleration / m.scene.pinion_inverse_mass
-    _, _, e1, e2 = static_error(m, y[U], y[PHASE])
-    turn /= 1.0 - e1
-    drive = driving_force(m, DRIVE, t, angle, turn)
-    pinion = (acceleration + e2 * turn * turn) / ((1.0 - e1) * m.scene.pinion_inverse_mass)
-    return (drive - pinion) / (1.0 - e1)
+    e = error_at(m, y[U], y[PHASE])
+    turn = turn_of(e, y[V], y[W])
+    drive = driving_force(m, DRIVE, t, torque_angle(m, DRIVE, y[U], y[PHASE]), turn)
+    acceleration = pinion_acceleration(e, turn, y[W], yp[V], yp[W])
+    return (drive - acceleration / m.scene.pinion_inverse_mass) / (1.0 - e.pinion)
 
 
 @compiled

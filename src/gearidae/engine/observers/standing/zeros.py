@@ -15,7 +15,7 @@ from gearidae.engine.compiling import SOLVER
 from gearidae.engine.model.checkpoint_record import HIGH, MOST_SLOW, MOST_ZEROS, SPARE
 from gearidae.engine.model.state import DRIVE, PHASE, Floats, Model, Record, U
 from gearidae.engine.observers.standing.free_gears import follow_free
-from gearidae.engine.pairs.tooth_pairs import static_error
+from gearidae.engine.pairs.mesh_error import error_at
 from gearidae.records.standing import GROWS, HALF_PITCH, SETTLED_WITHIN, SHARE, stands
 
 DECIDED: Final = 2.0 * HALF_PITCH
@@ -41,9 +41,7 @@ def make_zero(m: Model, i: int, t: float, position: float, y: Floats, at_start: 
     z.position = z.lowest = z.highest = position
     z.lead = 0.0
     if m.scene.torque[DRIVE].takes_angle != 0:
-        z.lead = y[U] - m.state.initial_lead
-        if m.scene.error_count != 0:
-            z.lead += static_error(m, y[U], y[PHASE])[1]
+        z.lead = y[U] - m.state.initial_lead + error_at(m, y[U], y[PHASE]).value
     z.exits = m.state.extremes.mesh_exits
     z.start = 1 if at_start else 0
     z.spent = 0
