@@ -37,6 +37,8 @@ TRIPLES = [
     ("shear friction", "maugis asperities", "hub friction"),
     ("coulomb friction", "hub friction", "discrete asperities"),
     ("coulomb friction", "static error", "mesh damping"),
+    ("coulomb friction", "pitch errors", "runout"),
+    ("elastic bodies", "pitch errors", "radius force"),
     ("hub friction", "held speed", "dry resistance"),
     ("pin friction", "hub friction", "coulomb friction"),
     ("pin friction", "hub friction", "discrete asperities"),

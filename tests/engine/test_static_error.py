@@ -6,7 +6,7 @@ import pytest
 import gearidae as gd
 from balances import assert_balanced
 from gearidae.engine import solve
-from gearidae.engine.pairs.tooth_pairs import static_error
+from gearidae.engine.pairs.mesh_error import mesh_error
 from gearidae.engine.setup.build import make_problem
 
 LOW = gd.preset("teodorescu2009_low_speed")
@@ -23,7 +23,7 @@ def test_the_angle_solves_its_equation(harmonics, phase):
     scene = LOW.replace({"mesh.static_error": harmonics})
     m = make_problem(scene).model
     radius, u = m.scene.pinion_radius / m.scene.length_unit, 3.0
-    angle, error, slope, _ = static_error(m, u, phase)
+    angle, error, slope, *_ = mesh_error(m, u, phase)
     terms = [(h.order, h.amplitude / m.scene.length_unit, h.phase) for h in scene.mesh.static_error]
     expected = sum(a * np.cos(n * angle + shift) for n, a, shift in terms)
     steepness = sum(-n * a * np.sin(n * angle + shift) for n, a, shift in terms) / radius

@@ -197,8 +197,8 @@ MUTANTS = (
     Mutant(
         "curvature of the static error left out",
         "engine/motion/residual.py",
-        "+ s.e2 * s.turn * s.turn",
-        "+ 0.0 * s.turn",
+        "+= s.error.pinion_bend * s.turn * s.turn",
+        "+= 0.0 * s.turn",
         SHAFTS,
     ),
     Mutant(

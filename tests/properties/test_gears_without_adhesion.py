@@ -29,6 +29,17 @@ CASES = {
             {"order": 1, "amplitude": 1e-6, "phase": 1.0},
         ]
     },
+    "runout of both gears": {
+        "mesh.pinion_runout": {"amplitude": 1e-6, "phase": 1.0},
+        "mesh.gear_runout": {"amplitude": 3e-6, "phase": -0.5},
+    },
+    "errors of single teeth, on both flanks": {
+        "mesh.pinion_pitch_error": (4e-9 * np.cos(np.arange(19) ** 2)).tolist(),
+        "mesh.gear_pitch_error": (5e-9 * np.sin(np.arange(76) ** 2)).tolist(),
+        "mesh.backlash": 5e-8,
+        "initial.gap": 1.5e-8,
+        "run.duration": 3e-5,
+    },
     "mesh damping": {"mesh.damping": 5e-6},
     "films of gas": {"mesh.film_damping": 2e-4, "mesh.film_gap": 1e-9},
     "load harmonics": {

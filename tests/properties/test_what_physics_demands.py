@@ -96,6 +96,10 @@ def drawn(seed):
     if rng.random() < 0.3:
         changes["mesh.static_error"] = [{"order": 19, "amplitude": 1e-9, "phase": 0.3}]
     if rng.random() < 0.3:
+        changes |= {"mesh.pitch_error_rms": 5e-9, "mesh.pitch_error_seed": int(rng.integers(1000))}
+    if rng.random() < 0.3:
+        changes["mesh.gear_runout"] = {"amplitude": 5e-8, "phase": 0.3}
+    if rng.random() < 0.3:
         changes |= {"gears.hub_friction": 0.2, "gears.pinion_hub_radius": 3e-6, "gears.gear_hub_radius": 6e-6}
     if rng.random() < 0.3:
         changes |= {"contact.friction": float(rng.uniform(0.05, 0.3)), "coating.friction": 0.1}
@@ -199,7 +203,7 @@ def _changes_by_torques(scene, ds):
     )
     force = ds.gear_contact_torque - gear * ds.mesh_force
     rate = gear / pinion * ds.drive_torque - ds.load_torque + force
-    if scene.mesh.static_error:  # the lever of the pinion changes by e'
+    if scene.mesh.static_error or scene.mesh.gear_runout:  # the levers change by their slopes
         return
     impulse = np.trapezoid(rate.values, ds.time.values)
     size = np.trapezoid(np.abs(rate.values), ds.time.values) + float(np.abs(momentum).max())

@@ -73,6 +73,11 @@ CHANGES = {
     "coating by place": {"coating.pinion_table": np.array(_TABLE)},
     "radius force": {"mesh.radius_force": True},
     "static error": {"mesh.static_error": [{"order": 19, "amplitude": 2e-9}]},
+    "pitch errors": {"mesh.pitch_error_rms": 2e-9, "mesh.pitch_error_seed": 1},
+    "runout": {
+        "mesh.pinion_runout": {"amplitude": 2e-8, "phase": 0.5},
+        "mesh.gear_runout": {"amplitude": 6e-8, "phase": -1.0},
+    },
     "mesh damping": {"mesh.damping": 7e-6},
     "film of gas": {"mesh.film_damping": 2e-5, "mesh.film_gap": 2e-8},
     "held speed": {"drive.speed": 11592.0, "drive.speed_gain": 1e-15},

@@ -1,8 +1,9 @@
 """A gear pair without adhesion in its two angles, both flanks, all pairs: another form of the equations, DOP853.
 
 Independent of the engine's states and scaling: Newton's law for each shaft in phi1 and phi2, the gaps from Teodorescu
-et al. 2009, Eqs. 4-6, the flanks' force interpolated from the readable line force. Static error, mesh damping, torque
-and load harmonics; the gear must keep turning forward (dry resistance is not set-valued here).
+et al. 2009, Eqs. 4-6, the flanks' force interpolated from the readable line force. Static error, runout and listed
+errors of single teeth, mesh damping, torque and load harmonics; the gear must keep turning forward (dry resistance is
+not set-valued here).
 """
 
 import math
@@ -31,20 +32,38 @@ class HertzGears:
         r1 = self.geometry.base_radius_pinion
         angle = start.mesh_phase * pitch / r2
         relief = float(separation(self.geometry, start.mesh_phase * pitch, scene.mesh.tip_relief_radius)[0])
-        u = 0.5 * scene.mesh.backlash + relief - start.gap
+        ratio = self.geometry.contact_ratio
+        there = np.arange(math.ceil(start.mesh_phase - ratio), math.floor(start.mesh_phase) + 1)
+        u = 0.5 * scene.mesh.backlash + relief + self.errors(there, 0).min() - start.gap
         pinion = brentq(
-            lambda a: r1 * a - r2 * angle - self.error(a)[0] - u, -10.0, 10.0, xtol=1e-16, rtol=1e-15
+            lambda a: r1 * a - r2 * angle - self.error(a, angle)[0] - u, -10.0, 10.0, xtol=1e-16, rtol=1e-15
         )
-        speed = r2 * start.gear_speed / (r1 - self.error(pinion)[1])
+        _, slope, gear_slope = self.error(pinion, angle)
+        speed = (r2 + gear_slope) * start.gear_speed / (r1 - slope)
         self.start = np.array([pinion, angle, speed, start.gear_speed])
 
-    def error(self, angle):
-        """Static transmission error [m] and its derivative [m/rad]."""
-        e = slope = 0.0
-        for h in self.scene.mesh.static_error:
+    def errors(self, pairs, coast):
+        """By how much the teeth of pairs stand back on a flank [m]."""
+        mesh = self.scene.mesh
+        first, second = (
+            np.array(listed or [0.0]) for listed in (mesh.pinion_pitch_error, mesh.gear_pitch_error)
+        )
+        sums = first[pairs % first.size] + second[(pairs + coast) % second.size]
+        return -sums if coast else sums
+
+    def error(self, angle, gear):
+        """Static transmission error with runout [m] and its derivatives in both angles [m/rad]."""
+        mesh, e, slope, gear_slope = self.scene.mesh, 0.0, 0.0, 0.0
+        for h in mesh.static_error:
             e += h.amplitude * math.cos(h.order * angle + h.phase)
             slope -= h.order * h.amplitude * math.sin(h.order * angle + h.phase)
-        return e, slope
+        if mesh.pinion_runout:
+            e += mesh.pinion_runout.amplitude * math.cos(angle + mesh.pinion_runout.phase)
+            slope -= mesh.pinion_runout.amplitude * math.sin(angle + mesh.pinion_runout.phase)
+        if mesh.gear_runout:
+            e += mesh.gear_runout.amplitude * math.cos(gear + mesh.gear_runout.phase)
+            gear_slope -= mesh.gear_runout.amplitude * math.sin(gear + mesh.gear_runout.phase)
+        return e, slope, gear_slope
 
     def film(self, gaps):
         """Damping of the films [N s/m]."""
@@ -58,25 +77,25 @@ class HertzGears:
         scene, geometry = self.scene, self.geometry
         pinion, gear, w1, w2 = y
         r1, r2, pitch = geometry.base_radius_pinion, geometry.base_radius_gear, geometry.base_pitch
-        e, slope = self.error(pinion)
-        u = r1 * pinion - r2 * gear - e
-        along_line = scene.mesh.damping * ((r1 - slope) * w1 - r2 * w2)
-        on_gear = r2 * along_line
+        e, slope, gear_slope = self.error(pinion, gear)
+        u, arm = r1 * pinion - r2 * gear - e, r2 + gear_slope
+        u_rate = (r1 - slope) * w1 - arm * w2
+        along_line = scene.mesh.damping * u_rate
+        on_gear = arm * along_line
         first = math.floor(r2 * gear / pitch)
         numbers = np.arange(first - 4, first + 5)
         drive = r2 * gear - numbers * pitch
         coast = 2.0 * geometry.approach - (r2 * gear - (numbers + 0.5) * pitch)
-        for sign, xi in ((1.0, drive), (-1.0, coast)):
+        for sign, back, xi in ((1.0, 0, drive), (-1.0, 1, coast)):
             opened, steepness = separation(geometry, xi, scene.mesh.tip_relief_radius)
-            gaps = 0.5 * scene.mesh.backlash - sign * u + opened
+            gaps = 0.5 * scene.mesh.backlash - sign * u + opened + self.errors(numbers, back)
             near = gaps < self.far
             if near.any():
                 radius = curvature_radii(geometry, xi[near])[2]
                 load = sign * np.sqrt(radius) * np.exp(self.log_force(np.maximum(gaps[near], self.deepest)))
-                u_rate = (r1 - slope) * w1 - r2 * w2
                 load -= sign * self.film(gaps[near]) * (sign * r2 * w2 * steepness[near] - sign * u_rate)
                 along_line += load.sum()
-                on_gear += r2 * (load * (1.0 + steepness[near])).sum()
+                on_gear += (load * (arm + r2 * steepness[near])).sum()
         torques = []
         for shaft in (scene.drive, scene.load):
             swing = (h.amplitude * math.cos(2 * math.pi * h.frequency * t + h.phase) for h in shaft.harmonic)
@@ -111,5 +130,5 @@ class HertzGears:
         )
         assert run.success
         pinion, gear, w1, w2 = run.y
-        e = np.array([self.error(a)[0] for a in pinion])
+        e = np.array([self.error(a, b)[0] for a, b in zip(pinion, gear, strict=True)])
         return np.array([r1 * pinion - self.geometry.base_radius_gear * gear - e, w1, w2])
