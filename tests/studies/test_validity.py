@@ -13,6 +13,7 @@ import pytest
 import gearidae as gd
 from gearidae.contact import line_force
 from gearidae.mesh.pair_contact import pair_contact
+from gearidae.runs.estimates import rest_of
 from gearidae.runs.validity import validity_attribute, validity_rows
 from gearidae.scene.validity_row import mean_note, rows_from_json
 
@@ -35,6 +36,7 @@ ROWS = [
         "attraction",
         "attraction_behind",
         "memory",
+        "tooth_errors",
         "disc_drag",
         "inertia_pinion",
         "inertia_gear",
@@ -260,3 +262,24 @@ def test_a_solid_disc_is_that_of_the_density():
     rows = gd.studies.validity(HIGH.replace({"gears.density": "2330 kg/m^3"}))
     for name in ("inertia_pinion", "inertia_gear"):
         assert rows.number[name] == pytest.approx(rows.bound[name], rel=1e-14, abs=0)
+
+
+def test_errors_of_teeth_are_compared_with_what_the_load_closes():
+    scene = HIGH
+    rows = gd.studies.validity(scene)
+    assert rows.number["tooth_errors"] == 10e-9  # assumed, as the scene has none
+    assert "left out of the scene" in rows.verdict["tooth_errors"]
+    assert not rows.holds["tooth_errors"]
+    inside = gd.studies.validity(scene.replace({"mesh.pitch_error_rms": 1e-10}))
+    drawn = gd.pitch_errors(scene.replace({"mesh.pitch_error_rms": 1e-10}))
+    rms = math.hypot(drawn.pinion_pitch_error.values.std(), drawn.gear_pitch_error.values.std())
+    assert inside.number["tooth_errors"] == pytest.approx(rms, rel=1e-12)
+    assert "pairs share the load" in inside.verdict["tooth_errors"]
+    assert inside.holds["tooth_errors"]
+
+
+def test_a_pair_s_force_falls_e_fold_over_the_closure_of_the_load():
+    rest = rest_of(HIGH)
+    closure = gd.studies.validity(HIGH).bound["tooth_errors"]
+    wider = float(rest.contact.force(rest.gap + 0.1 * closure))
+    assert wider / rest.load == pytest.approx(math.exp(-0.1), rel=2e-2)

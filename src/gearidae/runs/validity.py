@@ -38,6 +38,7 @@ from gearidae.runs.train_statics import stages
 from gearidae.runs.yielding import yielding_row
 from gearidae.scene import TrainScene
 from gearidae.scene.gears import disc_inertia
+from gearidae.scene.pitch_errors import has_pitch_errors, rms_of_sums
 from gearidae.scene.prefixes import with_prefix
 from gearidae.scene.validity_row import EXPECTED_ASPERITIES, ValidityRow, rows_to_json
 
@@ -60,6 +61,8 @@ _USUAL_HAMAKER: Final = 5e-20
 """Hamaker constant [J] of flanks in a scene that has none: an assumption, to say what it leaves out."""
 _LITTLE_ATTRACTION: Final = 0.1
 """Share of the force that presses below which the attraction may be left out."""
+_USUAL_ERROR: Final = 10e-9
+"""Error of two teeth that meet [m], in a scene that has none: an assumption; lithography places flanks to 5 to 100 nm."""
 _NO_LOAD = "no mean torque of the drive presses the teeth together: there is no resting contact"
 
 
@@ -149,7 +152,8 @@ def _rows(scene: GearScene) -> tuple[ValidityRow, ...]:
         rows += [
             _attraction(scene, rest, behind, "attraction_behind", "attraction across the backlash behind")
         ]
-        rows += [_memory(scene, rest), _disc_drag(scene), *_inertia(scene), *locking_rows(scene)]
+        rows += [_memory(scene, rest), _tooth_errors(scene, rest, stiffness), _disc_drag(scene)]
+        rows += [*_inertia(scene), *locking_rows(scene)]
     return tuple(rows)
 
 
@@ -397,6 +401,34 @@ def _attraction(scene: Scene, rest: Rest, gap: float, name: str, quantity: str) 
         verdict = f"in the scene, {across}" if inside else f"{missing}, {across}"
     bound = rest.load if rest.contact.attracts else _LITTLE_ATTRACTION * rest.load
     return _row(name, quantity, pull, "N", limit, bound, holds, verdict)
+
+
+def _tooth_errors(scene: GearScene, rest: Rest, stiffness: float) -> ValidityRow:
+    """Compare errors of single teeth, in the scene or not, with what a pair's gap closes by under the load.
+
+    The force of a pair grows e-fold, about, over its load over its stiffness: by more than that between two pairs in
+    mesh one of them carries the load alone.
+    """
+    closure, inside = math.nan, has_pitch_errors(scene)
+    error = rms_of_sums(scene) if inside else _USUAL_ERROR
+    if stiffness > 0.0:
+        closure = rest.load / stiffness
+    small = error <= closure
+    words = (
+        "pairs share the load as equal teeth do"
+        if small
+        else "one of two pairs in mesh carries the load alone"
+    )
+    where = (
+        "in the scene"
+        if inside
+        else f"with an assumed {with_prefix(_USUAL_ERROR, 'm')}, left out of the scene"
+    )
+    verdict = f"{where}, {_times(error / closure)} that: {words}" if closure > 0.0 else ""
+    limit = f"{with_prefix(closure, 'm')}, load over stiffness of one pair"
+    quantity = "rms error of two teeth that meet"
+    number = math.nan if math.isnan(closure) else error
+    return _row("tooth_errors", quantity, number, "m", limit, closure, inside or small, verdict)
 
 
 def _disc_drag(scene: GearScene) -> ValidityRow:

@@ -141,6 +141,11 @@ def extreme_sums(scene: GearScene) -> tuple[tuple[float, float], tuple[float, fl
     return bounds[0], bounds[1]
 
 
+def rms_of_sums(scene: GearScene) -> float:
+    """Root mean square, about their mean, of the sums of one tooth of each gear [m]."""
+    return math.hypot(*(float(errors.std()) for errors in errors_of_teeth(scene)))
+
+
 def errors_range(scene: GearScene) -> float:
     """By how much the gaps of two pairs of one flank may differ at one place of the path [m]."""
     return max(high - low for low, high in extreme_sums(scene)) if has_pitch_errors(scene) else 0.0
