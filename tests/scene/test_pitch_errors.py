@@ -73,6 +73,7 @@ def test_errors_travel_with_their_scene(tmp_path):
     assert Scene.from_dict(json.loads(json.dumps(scene.to_dict()))) == scene
     (tmp_path / "case.toml").write_text(dump_case(scene))
     assert load_case(tmp_path / "case.toml") == scene
+    assert "19 teeth, -9 nm to 9 nm" in repr(scene)
     gone = {"mesh.pinion_pitch_error": [], "mesh.pinion_runout": None, "mesh.gear_runout": None}
     assert scene.replace(gone) == SCENE
     assert scene.replace({"mesh.gear_runout.phase": 1.0}).mesh.gear_runout.phase == 1.0

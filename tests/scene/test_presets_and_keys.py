@@ -17,7 +17,9 @@ CONTRACT = {
     "pinion_hub_adhesion gear_hub_adhesion "
     "pinion_axial_load gear_axial_load pinion_dimple_radius gear_dimple_radius",
     "mesh": "backlash tip_relief_radius radius_force damping film_damping film_gap static_error static_error.order "
-    "static_error.amplitude static_error.phase module driver_base_radius pressure_angle face_width",
+    "static_error.amplitude static_error.phase pinion_pitch_error gear_pitch_error pitch_error_rms pitch_error_seed "
+    "pinion_runout pinion_runout.amplitude pinion_runout.phase gear_runout gear_runout.amplitude gear_runout.phase "
+    "module driver_base_radius pressure_angle face_width",
     "surface": "youngs_modulus poisson_ratio energy asperity_density asperity_radius roughness interaction_range "
     "hamaker provenance humidity contact_angle bridged temperature",
     "coating": "sam_fraction energy hamaker pairing thickness pinion_fraction gear_fraction pinion_table gear_table "

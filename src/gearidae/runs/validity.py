@@ -62,7 +62,7 @@ _USUAL_HAMAKER: Final = 5e-20
 _LITTLE_ATTRACTION: Final = 0.1
 """Share of the force that presses below which the attraction may be left out."""
 _USUAL_ERROR: Final = 10e-9
-"""Error of two teeth that meet [m], in a scene that has none: an assumption; lithography places flanks to 5 to 100 nm."""
+"""Error of two teeth that meet [m], in a scene without any: an assumption, as lithography places to 5 to 100 nm."""
 _NO_LOAD = "no mean torque of the drive presses the teeth together: there is no resting contact"
 
 

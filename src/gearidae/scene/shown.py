@@ -182,6 +182,8 @@ def value_text(key: str, value: object) -> str:
 def _list(key: str, value: list[Any] | tuple[Any, ...]) -> str:
     if key.startswith("contact.asperities."):
         return f"{len(value)} cells"
+    if key.endswith("_pitch_error"):
+        return f"{len(value)} teeth, {with_prefix(min(value), 'm')} to {with_prefix(max(value), 'm')}"
     if value and isinstance(value[0], (list, tuple)) and key.endswith("_table"):
         return f"{len(value)} rows of {len(value[0])}"
     if value and isinstance(value[0], (list, tuple)):
