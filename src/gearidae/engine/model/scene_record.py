@@ -152,14 +152,9 @@ SCENE: Final = record_type(
     ("gear_radius", REAL),  # base radius R2 [m]
     ("pinion_radius", REAL),  # base radius R1 [m]
     ("pinion_teeth", REAL),  # [1]
-    ("gear_teeth", REAL),  # [1]
     ("pinion_inverse_mass", REAL),  # R1^2 tau^2 F / (I1 sigma): acceleration per force; 1 of a roller [1]
     ("gear_inverse_mass", REAL),  # R2^2 tau^2 F / (I2 sigma); 0 where the gear is held [1]
     ("clearance", REAL, (2,)),  # gap on the path at u = 0 by flank; infinite where it meets none [sigma]
-    ("nearest", REAL, (2,)),  # the same of the teeth that stand out farthest [sigma]
-    ("pitch_errors", INT),  # 1 if teeth have errors of their own
-    ("pinion_errors_at", INT),  # those of the pinion's teeth among the tables [index]
-    ("gear_errors_at", INT),  # and those of the gear's [index]
     ("phase_rate", REAL),  # sigma / pb: rate of the phase per surface velocity of the gear [1]
     ("contact_ratio", REAL),  # path of contact [pb]
     ("coast_phase", REAL),  # 2 approach / pb + 1/2: mirrors the coast flank about the pitch point [pb]
@@ -172,9 +167,6 @@ SCENE: Final = record_type(
     ("curvature_force", INT),  # 1 if a force pays for the changing contact length
     *((name, REAL) for name in KEYED),
     ("dry", INT),  # 1 if there is dry resistance at the gear
-    ("has_error", INT),  # 1 if the mesh has an error of the angles: static error or runout
-    ("gear_runout", REAL),  # amplitude of the gear's runout [sigma]
-    ("gear_runout_phase", REAL),  # its phase [rad]
     ("error_count", INT),  # harmonics of the pinion's angle: static error and its own runout [1]
     ("error_at", INT),  # order, amplitude and phase of each, among the tables [index]
     ("torque", TORQUE, (2,)),  # of the pinion (DRIVE) and of the gear (LOAD)
@@ -262,4 +254,12 @@ SCENE: Final = record_type(
     ("attraction_floor", REAL),  # gap below which the attraction grows no further [sigma]
     ("friction", FRICTION),  # of flanks and hubs
     ("noting", INT),  # 1 where the forces of single pairs are noted, for exposures, friction or nodes
+    ("gear_teeth", REAL),  # [1]
+    ("nearest", REAL, (2,)),  # clearance of the teeth that stand out farthest, by flank [sigma]
+    ("pitch_errors", INT),  # 1 if teeth have errors of their own
+    ("pinion_errors_at", INT),  # those of the pinion's teeth among the tables [index]
+    ("gear_errors_at", INT),  # and those of the gear's [index]
+    ("has_error", INT),  # 1 if the mesh has an error of the angles: static error or runout
+    ("gear_runout", REAL),  # amplitude of the gear's runout [sigma]
+    ("gear_runout_phase", REAL),  # its phase [rad]
 )

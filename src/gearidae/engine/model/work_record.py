@@ -257,6 +257,27 @@ CONTACT: Final = record_type(  # of a population: the candidates of a pair
     ("start_place_rate", REAL),  # the rate of that [pb/tau]
 )
 
+MESH_ERROR: Final = record_type(  # the last evaluation of the error of the mesh
+    ("known", INT),  # 1 if there has been one
+    ("u", REAL),  # state of which it is [sigma]
+    ("phase", REAL),  # [pb]
+    ("turns", REAL),  # [pb]
+    ("angle", REAL),  # of the pinion [rad]
+    ("value", REAL),  # [sigma]
+    ("pinion", REAL),  # derivatives in the pinion's angle [1]
+    ("pinion_bend", REAL),  # [1/sigma]
+    ("gear", REAL),  # and in the gear's [1]
+    ("gear_bend", REAL),  # [1/sigma]
+)
+
+PITCH_ERROR: Final = record_type(  # of the teeth of a pair, as last looked up
+    (
+        "tag",
+        REAL,
+    ),  # number of the pair with all turns, and a half, so that no pair has the tag of blank records [1]
+    ("value", REAL),  # [sigma]
+)
+
 WORK: Final = record_type(
     ("quadrature", QUADRATURE),  # of the energy balance
     ("resistance", RESISTANCE),  # of the energy balance
@@ -290,4 +311,6 @@ WORK: Final = record_type(
     ("law_steps", INT),  # steps since the last of them [1]
     ("contact", CONTACT, (2 * SLOTS_HIGH,)),  # of a population
     ("friction", FRICTION_WORK),  # of friction
+    ("mesh_error", MESH_ERROR),  # of a mesh that has one
+    ("pitch_error", PITCH_ERROR, (2 * SLOTS_HIGH,)),  # by history
 )

@@ -19,7 +19,7 @@ from gearidae.engine.friction.pairs import direction, levers, set_limits
 from gearidae.engine.model.record_types import AT_REST, FREE, HELD_GEAR, HELD_PAIR
 from gearidae.engine.model.state import DRIVE, LOAD, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
-from gearidae.engine.pairs.mesh_error import MeshError, error_at, turn_of
+from gearidae.engine.pairs.mesh_error import MeshError, speed_and_error
 from gearidae.engine.pairs.pair_force import MeshForces
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.laws.shafts import by_speed, driving_force
@@ -50,8 +50,7 @@ class Shafts(NamedTuple):
 def shafts_at(m: Model, t: float, y: Floats, mesh: MeshForces) -> Shafts:
     """Put the forces of the mesh, its damping and the torques on the pinion on both shafts."""
     force = mesh.force + m.scene.damping * y[V]
-    e = error_at(m, y[U], y[PHASE])
-    turn = turn_of(e, y[V], y[W])
+    turn, e = speed_and_error(m, y)
     drive = driving_force(m, DRIVE, t, torque_angle(m, DRIVE, y[U], y[PHASE]), turn)
     return Shafts(turn, drive - (1.0 - e.pinion) * force, (1.0 + e.gear) * force + mesh.relief, e)
 

@@ -43,7 +43,7 @@ from gearidae.engine.events.pair_events import newly_stretched
 from gearidae.engine.events.sliding import dry_guard
 from gearidae.engine.model.state import DRIVE, LOAD, MATERIALS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.observers.adhesion_loss import joining_lag
-from gearidae.engine.pairs.mesh_error import error_at, pinion_acceleration, turn_of
+from gearidae.engine.pairs.mesh_error import pinion_acceleration, speed_and_error
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.pairs.squeeze_film import film_loss
 from gearidae.engine.pairs.tooth_pairs import (
@@ -362,8 +362,8 @@ def _torque_slopes(m: Model, t: float, y: Floats) -> float:
 @compiled
 def _pinion(m: Model, y: Floats, yp: Floats) -> tuple[float, float, float]:
     """Travel of the pinion's base circle, its rate and the rate of that."""
-    e = error_at(m, y[U], y[PHASE])
-    travel, speed = y[U] + y[PHASE] / m.scene.phase_rate + e.value, turn_of(e, y[V], y[W])
+    speed, e = speed_and_error(m, y)
+    travel = y[U] + y[PHASE] / m.scene.phase_rate + e.value
     return travel, speed, pinion_acceleration(e, speed, y[W], yp[V], yp[W])
 
 

@@ -67,9 +67,12 @@ def mesh_error(m: Model, u: float, phase: float) -> MeshError:
     """Error of a mesh that has one.
 
     ``R1 phi1 - E(phi1, phi2) = u + R2 phi2`` is solved for the pinion's angle by Newton's method: E is small against
-    R1. Four steps are enough where E is smooth over its own size; a ripple of high order may take more.
+    R1. Four steps are enough where E is smooth over its own size; a ripple of high order may take more. The observers
+    ask for it at an accepted state one after the other: the last evaluation is kept.
     """
-    s = m.scene
+    s, last = m.scene, m.work.mesh_error
+    if last.known != 0 and last.u == u and last.phase == phase and last.turns == m.state.turns:
+        return MeshError(last.angle, last.value, last.pinion, last.pinion_bend, last.gear, last.gear_bend)
     radius = s.pinion_radius / s.length_unit
     runout = gear = gear_bend = 0.0
     if s.gear_runout != 0.0:
@@ -98,6 +101,9 @@ def mesh_error(m: Model, u: float, phase: float) -> MeshError:
         step = (angle - rigid - e / radius) / (1.0 - e1)
         angle -= step
         phase_step = highest * abs(step)  # e and its derivatives are those before the step
+    last.known, last.u, last.phase, last.turns = 1, u, phase, m.state.turns
+    last.angle, last.value, last.pinion, last.pinion_bend = angle, e + runout, e1, e2
+    last.gear, last.gear_bend = gear, gear_bend
     return MeshError(angle, e + runout, e1, e2, gear, gear_bend)
 
 
@@ -130,8 +136,17 @@ def bend_of(e: MeshError, turn: float, w: float, pinion: float, gear: float) -> 
     return (1.0 - e.pinion) * pinion - (1.0 + e.gear) * gear - bends
 
 
+@compiled(inline=True)
+def speed_and_error(m: Model, y: Floats) -> tuple[float, MeshError]:
+    """Surface velocity of the pinion at a state, and the error of the mesh."""
+    turn, e = y[V] + y[W], NO_ERROR
+    if m.scene.has_error != 0:  # most scenes have none, and this is in every evaluation
+        e = mesh_error(m, y[U], y[PHASE])
+        turn = turn_of(e, y[V], y[W])
+    return turn, e
+
+
 @compiled
 def pinion_speed(m: Model, y: Floats) -> tuple[float, MeshError]:
-    """Surface velocity of the pinion at a state, and the error of the mesh."""
-    e = error_at(m, y[U], y[PHASE])
-    return turn_of(e, y[V], y[W]), e
+    """`speed_and_error` for what asks now and then."""
+    return speed_and_error(m, y)

@@ -15,7 +15,7 @@ from gearidae.compiled import compiled
 from gearidae.engine import adams
 from gearidae.engine.model.state import DRIVE, PHASE, Floats, Model, Record, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
-from gearidae.engine.pairs.mesh_error import error_at, pinion_acceleration, turn_of
+from gearidae.engine.pairs.mesh_error import pinion_acceleration, speed_and_error
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.pairs.tooth_pairs import in_flight
 from gearidae.formulas.interpolation import cubic, quintic, vertex
@@ -41,8 +41,7 @@ def force_of_motion(m: Model, t: float, y: Floats, yp: Floats) -> float:
         return m.scene.damping * y[V]
     if m.scene.friction.rubs != 0:
         return _force_with_friction(m, t, y)
-    e = error_at(m, y[U], y[PHASE])
-    turn = turn_of(e, y[V], y[W])
+    turn, e = speed_and_error(m, y)
     drive = driving_force(m, DRIVE, t, torque_angle(m, DRIVE, y[U], y[PHASE]), turn)
     acceleration = pinion_acceleration(e, turn, y[W], yp[V], yp[W])
     return (drive - acceleration / m.scene.pinion_inverse_mass) / (1.0 - e.pinion)
