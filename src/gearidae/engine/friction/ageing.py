@@ -28,8 +28,8 @@ from typing import Final, NamedTuple
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import FRICTION
 from gearidae.engine.model.record_types import GEAR_HUB, PIN, PINION_HUB
-from gearidae.engine.model.state import PHASE, Floats, Model, U, V, W
-from gearidae.engine.pairs.tooth_pairs import static_error
+from gearidae.engine.model.state import PHASE, Floats, Model, U, W
+from gearidae.engine.pairs.mesh_error import pinion_speed
 from gearidae.formulas.interpolation import cubic
 
 _PIECE: Final = 0.5
@@ -153,10 +153,8 @@ def begin_ageing(m: Model, t: float, y: Floats) -> None:
 def _shafts(m: Model, y: Floats) -> tuple[float, float, float, float]:
     """Ways and speeds of the base circles of pinion and gear."""
     gear = y[PHASE] / m.scene.phase_rate
-    if m.scene.error_count == 0:
-        return gear + y[U], gear, y[V] + y[W], y[W]
-    _, e, e1, _ = static_error(m, y[U], y[PHASE])
-    return gear + y[U] + e, gear, (y[V] + y[W]) / (1.0 - e1), y[W]
+    turn, e = pinion_speed(m, y)
+    return gear + y[U] + e.value, gear, turn, y[W]
 
 
 @compiled
