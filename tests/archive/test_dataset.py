@@ -111,8 +111,9 @@ def test_flags_follow_cf(make_solution):
         "onset", "separation", "turning_point", "full_stretch", "mesh_entry",
         "mesh_exit", "stick", "slip", "flank_change", "schedule_knot", "asperity_onset",
         "asperity_detachment", "sliding_reversal", "flank_stick", "flank_slip",
+        "pinion_spring_contact", "gear_spring_contact", "pinion_spring_release", "gear_spring_release",
     ]  # fmt: skip
-    assert kind["flag_values"].tolist() == list(range(15))
+    assert kind["flag_values"].tolist() == list(range(19))
     assert flank["flag_meanings"].split() == ["none", "drive", "coast"]
     assert flank["flag_values"].tolist() == [-1, 0, 1]
     for name in ("event_kind", "event_flank"):  # CF: flag values have the variable's own type

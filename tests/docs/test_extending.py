@@ -222,12 +222,12 @@ from gearidae.records.quantity import in_si
 assert "viscous_loss" in LOSSES
 assert ENERGY_BALANCE["viscous_loss"].units == "J"
 scene = SimpleNamespace(
-    torque=[SimpleNamespace(drag=0.0, viscous=3.0)] * 2,
+    torque=[SimpleNamespace(drag=0.0, viscous=3.0, spring=0.0, spring_damping=0.0)] * 2,
     force_unit=5.0, length_unit=7.0, time_unit=1.0, gear_radius=1.0
 )
 energy, time = np.zeros(1, STATE["energy"])[0], 0.25
 m = SimpleNamespace(scene=scene, state=SimpleNamespace(energy=energy))
-assert book_losses(m, 1, time, 2.0 * time, Ends(2.0, 0.0, 2.0, 0.0)) == 3.0 * 2.0**2 * time
+assert book_losses(m, 1, time, 0.0, 2.0 * time, Ends(2.0, 0.0, 2.0, 0.0)) == 3.0 * 2.0**2 * time
 numbers = in_si(ENERGY_SUMS, energy, scene)
 np.testing.assert_allclose(numbers["viscous_loss"], 3.0 * 2.0**2 * time * 5.0 * 7.0)
 assert numbers["drag_loss"] == 0.0

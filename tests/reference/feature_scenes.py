@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 import gearidae as gd
+from gearidae.laws.law import SHAFT_NAMES
+from gearidae.laws.shafts import SHAFT_LAWS
 
 __all__ = ["CHANGES", "HALF", "SAMPLES", "scene_with"]
 
@@ -82,6 +84,15 @@ CHANGES = {
     "film of gas": {"mesh.film_damping": 2e-5, "mesh.film_gap": 2e-8},
     "held speed": {"drive.speed": 11592.0, "drive.speed_gain": 1e-15},
     "exposures": {"run.exposures": 4},
+    **{
+        law.name: {
+            f"gears.{shaft}_{constant.name}": constant.key.example
+            for shaft in SHAFT_NAMES
+            for constant in law.coefficients
+        }
+        for law in SHAFT_LAWS
+        if any(constant.key for constant in law.coefficients)
+    },
 }
 """Changes that give the scene a feature."""
 

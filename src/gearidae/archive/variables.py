@@ -21,6 +21,7 @@ from gearidae.records import (
     GEAR_SAMPLES,
     HUB_FRICTION_SAMPLES,
     HUB_SAMPLES,
+    LAW_SAMPLES,
     PIN_FRICTION_SAMPLES,
     PIN_SAMPLES,
     POPULATION_SAMPLES,
@@ -113,6 +114,7 @@ SAMPLES: Mapping[str, Variable] = {
         *PIN_SAMPLES,
         *HUB_FRICTION_SAMPLES,
         *PIN_FRICTION_SAMPLES,
+        *LAW_SAMPLES,
     )
 }
 

@@ -6,23 +6,33 @@ The others act on either shaft as they are. Sums begin at -0.0, to which adding 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from gearidae.compiled import compiled
 from gearidae.formulas.quadrature import Ends
-from gearidae.laws.law import Range, ShaftLaw, in_turn
+from gearidae.laws.law import DRIVE, SHAFT_NAMES, Range, ShaftLaw, Verb, in_turn, number_of
 from gearidae.laws.shaft.constant import CONSTANT
 from gearidae.laws.shaft.drag import DRAG
 from gearidae.laws.shaft.harmonic import HARMONICS, ORDERS
 from gearidae.laws.shaft.held_speed import HELD_SPEED
 from gearidae.laws.shaft.own import OWN
 from gearidae.laws.shaft.schedule import SCHEDULE
+from gearidae.laws.shaft.spring import SPRING
 
 if TYPE_CHECKING:
     from gearidae.engine.model.state import Model
     from gearidae.scene import GearScene
 
-SHAFT_LAWS: Final[tuple[ShaftLaw, ...]] = (CONSTANT, HARMONICS, SCHEDULE, OWN, ORDERS, HELD_SPEED, DRAG)
+SHAFT_LAWS: Final[tuple[ShaftLaw, ...]] = (
+    CONSTANT,
+    HARMONICS,
+    SCHEDULE,
+    OWN,
+    ORDERS,
+    HELD_SPEED,
+    DRAG,
+    SPRING,
+)
 """In the order of additions."""
 
 _DRIVING = tuple(law for law in SHAFT_LAWS if law.drives)
@@ -37,13 +47,51 @@ acting = in_turn(tuple(law.force for law in _ACTING))
 """Add what acts on a shaft besides its driving torque: (m, shaft, t, angle, speed, value) -> value."""
 by_speed = in_turn(tuple(law.by_speed for law in SHAFT_LAWS))
 """Add the slopes of all forces on a shaft in its speed: (m, shaft, angle, speed, value) -> value."""
+by_angle = in_turn(tuple(law.by_angle for law in SHAFT_LAWS))
+"""Add the slopes of all forces on a shaft in its angle [1/rad]: (m, shaft, angle, speed, value) -> value."""
 _losses = in_turn(tuple(law.loss for law in _ACTING))
+stored = in_turn(tuple(law.energy for law in _ACTING))
+"""Add the energies that laws of a shaft store: (m, shaft, angle, value) -> value."""
+guard = in_turn(tuple(law.guard for law in _ACTING))
+"""Take the least distance of the laws of a shaft to their next switch: (m, shaft, angle, speed, value) -> value."""
+switch = in_turn(tuple(law.switch for law in _ACTING))
+"""Switch the first law whose guard has fallen: (m, shaft, angle, speed, -1) -> number of its event, -1 if none has."""
+
+
+def _writer(law: ShaftLaw, place: int) -> Verb:
+    """Verb that writes the torque of a law into a row of samples, where a shaft has it; `value` is the place there."""
+    force, bit = law.force, 1 << place
+
+    @compiled
+    def write(m: Any, shaft: int, t: float, angle: float, speed: float, row: Any, value: int) -> int:
+        torque = m.scene.torque[shaft]
+        if torque.sampled & bit == 0:
+            return value
+        radius = m.scene.length_unit / torque.angle_unit
+        row[value] = force(m, shaft, t, angle, speed, -0.0) * m.scene.force_unit * radius
+        return value + 1
+
+    return write
+
+
+SAMPLED: Final = tuple(law for law in SHAFT_LAWS if law.sample is not None)
+write_samples = in_turn(tuple(_writer(law, place) for place, law in enumerate(SAMPLED)))
+"""Write the torques of all sampled laws of a shaft: (m, shaft, t, angle, speed, row, place) -> next place."""
 
 
 @compiled(inline=True)
 def driving_force(m: Model, shaft: int, t: float, angle: float, speed: float) -> float:
     """Driving torque over base radius and reference load, at a scaled time, an angle [rad] and a scaled speed."""
     return _driving(m, shaft, t, angle, speed, -0.0)
+
+
+@compiled(inline=True)
+def pinion_force(m: Model, t: float, angle: float, speed: float) -> float:
+    """Driving torque on the pinion with all that acts there as it is, over its base radius and the reference load."""
+    value = driving_force(m, DRIVE, t, angle, speed)
+    if m.scene.torque[DRIVE].acts != 0:
+        value = acting(m, DRIVE, t, angle, speed, value)
+    return value
 
 
 @compiled
@@ -73,9 +121,29 @@ def driving_range(m: Model, shaft: int, t: float, to: float, angle: float) -> tu
 
 
 @compiled(inline=True)
-def book_losses(m: Model, shaft: int, h: float, travel: float, turn: Ends) -> float:
+def book_losses(m: Model, shaft: int, h: float, angle: float, travel: float, turn: Ends) -> float:
     """Book the losses of what acts on a shaft in a step of the length h, and return them."""
-    return _losses(m, shaft, h, travel, turn, 0.0)
+    return _losses(m, shaft, h, angle, travel, turn, 0.0)
+
+
+def has_law(scene: Any, shaft: int, law: ShaftLaw) -> bool:
+    """Whether a shaft has a law whose keys are those of the gears."""
+    return any(number_of(scene, shaft, constant.name) != 0.0 for constant in law.coefficients if constant.key)
+
+
+def sampled_laws(scene: Any) -> tuple[str, ...]:
+    """Names of the columns that laws of the shafts sample of a scene, in the order in which they are written."""
+    return tuple(
+        f"{SHAFT_NAMES[shaft]}_{law.sample.name}"
+        for shaft in range(len(SHAFT_NAMES))
+        for law in SAMPLED
+        if law.sample is not None and has_law(scene, shaft, law)
+    )
+
+
+def is_held(scene: GearScene) -> bool:
+    """Whether a law of a shaft keeps the gears from turning on for ever."""
+    return any(law.holds(scene, shaft) for law in SHAFT_LAWS if law.holds is not None for shaft in range(2))
 
 
 def slowing(scene: GearScene, shaft: int) -> tuple[float, float]:

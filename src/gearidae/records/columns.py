@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from typing import Final, NamedTuple
 
+from gearidae.laws.law import SHAFT_NAMES
+from gearidae.laws.shafts import SAMPLED
 from gearidae.records.rows import places
 
 
@@ -113,6 +115,18 @@ PIN_SAMPLES: Final = (
         "0.3",
     ),
 )
+LAW_SAMPLES: Final = tuple(
+    Column(
+        f"{shaft}_{law.sample.name}",
+        "N m",
+        law.sample.meaning.format(shaft=shaft),
+        f"positive turns the {shaft} forward",
+        "0.3",
+    )
+    for shaft in SHAFT_NAMES
+    for law in SAMPLED
+    if law.sample is not None
+)
 
 _OF_INSTANT: Final = "of the instant: it grows with the time at rest, and sliding forgets that"
 HUB_FRICTION_SAMPLES: Final = (
@@ -133,7 +147,8 @@ HUB_COLUMNS = tuple(column.name for column in HUB_SAMPLES)
 PIN_COLUMNS = tuple(column.name for column in PIN_SAMPLES)
 HUB_FRICTION_COLUMNS = tuple(column.name for column in HUB_FRICTION_SAMPLES)
 PIN_FRICTION_COLUMNS = tuple(column.name for column in PIN_FRICTION_SAMPLES)
-"""Additional columns of elastic contacts, of populations, of hubs and of a pin, after the others."""
+"""Additional columns of elastic contacts, of populations, of hubs and of a pin, after the others; those of laws of the
+shafts follow them."""
 
 
 GEAR: Final = places(*GEAR_COLUMNS, *ELASTIC_COLUMNS)

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Final
 
+from gearidae.laws.shafts import SHAFT_LAWS
 from gearidae.records.quantity import ENERGY, Quantity, Totals, Unit
 
 _energy = partial(Quantity, unit=ENERGY)
@@ -29,6 +30,7 @@ ENERGY_SUMS: Final = (
     _loss("dry_loss", "energy lost to dry resistance", archive=True, group="useful"),
     _loss("damping_loss", "energy lost to the mesh's viscous damping", archive=True),
     _loss("film_loss", "energy lost to films of gas between flanks", archive=True, since="0.3"),
+    *(_loss(loss.name, loss.meaning, archive=True, since="0.3") for law in SHAFT_LAWS for loss in law.losses),
     _loss("adhesion_loss", "energy lost to adhesion", archive=True),
     _loss(
         "flank_loss",
@@ -67,6 +69,7 @@ ENERGY_SUMS: Final = (
     ),
     _energy("throughput", "all works and changes of kinetic energy without regard to sign", archive=True),
     _energy("start_stored", "energy stored in contacts at the start"),
+    _energy("start_shafts", "energy stored by laws of the shafts at the start"),
     _energy("start_kinetic", "kinetic energy at the start"),
     _energy("peak_kinetic", "largest kinetic energy"),
     _energy(
@@ -84,6 +87,13 @@ ENERGY_NOW: Final = (
         "energy stored in contacts, at the end less at the start",
         archive=True,
         remark="stored in contacts",
+    ),
+    _loss(
+        "shaft_change",
+        "energy stored by laws of the shafts, at the end less at the start",
+        archive=True,
+        remark="stored in springs of the shafts",
+        since="0.3",
     ),
     _loss(
         "kinetic_change",
@@ -164,8 +174,8 @@ class EnergyBalance(Totals):
 
             (a \max(\mathrm{rtol}, a_t) + a_r)\, E + a_w\,\mathrm{rtol}\, W + a_q D + a_p P
 
-        with E the energy exchanged: `throughput`, `largest`, `adhesion_loss`, the magnitude of `stored_change` and
-        `speed_work`; W, `torque_work`; D, `quadrature_error`; and P, `pitch_work`. The
+        with E the energy exchanged: `throughput`, `largest`, `adhesion_loss`, the magnitudes of `stored_change`
+        and `shaft_change`, and `speed_work`; W, `torque_work`; D, `quadrature_error`; and P, `pitch_work`. The
         first two terms are for errors of the motion: speeds and gaps have the tolerance rtol in each step, and the
         tables of force and energy agree no better than :math:`a_t`. The others are for the quadratures of the balance
         and for rounding.
@@ -185,7 +195,12 @@ class EnergyBalance(Totals):
         """
         of_motion = (ROLLER_BOUND if roller else GEAR_BOUND) * max(rtol, TABLE_BOUND) + ROUNDING_BOUND
         moved = (
-            self.throughput + self.largest + self.adhesion_loss + abs(self.stored_change) + self.speed_work
+            self.throughput
+            + self.largest
+            + self.adhesion_loss
+            + abs(self.stored_change)
+            + abs(self.shaft_change)
+            + self.speed_work
         )
         of_motion_and_torque = of_motion * moved + TORQUE_BOUND * rtol * self.torque_work
         of_quadratures = QUADRATURE_BOUND * self.quadrature_error

@@ -9,12 +9,16 @@ from typing import ClassVar, Final
 
 import numpy as np
 
+from gearidae.laws.law import SHAFT_NAMES
+from gearidae.laws.shafts import SHAFT_LAWS
 from gearidae.records.rows import FLAG, RowColumn, Rows, places
 
 
 @unique
 class EventKind(IntEnum):
-    """Kind of an event, as stored in ``event_kind``."""
+    """Kind of an event, as stored in ``event_kind``; those of laws of a shaft are declared by them."""
+
+    _ignore_ = ("shaft", "declared")
 
     ONSET = 0
     SEPARATION = 1
@@ -31,6 +35,9 @@ class EventKind(IntEnum):
     SLIDING_REVERSAL = 12
     FLANK_STICK = 13
     FLANK_SLIP = 14
+    for declared in (event for law in SHAFT_LAWS for event in law.events):
+        for shaft in (0, 1):
+            vars()[f"{SHAFT_NAMES[shaft]}_{declared.name}".upper()] = declared.numbers[shaft]
 
 
 class Flank(IntEnum):

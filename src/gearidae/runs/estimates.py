@@ -10,7 +10,7 @@ import numpy as np
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.laws.law import DRIVE, LOAD
-from gearidae.laws.shafts import slowing
+from gearidae.laws.shafts import is_held, slowing
 from gearidae.mesh.pair_contact import PairContact, pair_contact
 from gearidae.runs.rubbing import hub_constants, sliding, transmitted_share
 from gearidae.scene import GearScene, Knots, RollerScene, Scene, require_gears
@@ -142,7 +142,7 @@ def _balance(
     held = _mean_size(_over_run(scene, 0.0, drive.speed_knots()))
     driven = torque + drive.speed_gain * held - taken[0]
     surplus = driven * ratio * transmitted - _mean_resistance(scene) - taken[1]
-    if surplus <= 0.0:
+    if surplus <= 0.0 or is_held(scene):
         return 0.0
     linear = at_gear + at_pinion * ratio**2 * transmitted
     slope = linear + math.sqrt(linear**2 + 4.0 * drag * surplus)

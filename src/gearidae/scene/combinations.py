@@ -11,6 +11,8 @@ from itertools import combinations as pairs_of
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from gearidae.errors import SceneError
+from gearidae.laws.law import DRIVE, LOAD, SHAFT_NAMES, ShaftLaw
+from gearidae.laws.shafts import SHAFT_LAWS, has_law
 from gearidae.scene.friction import has_flank_friction
 from gearidae.scene.joints import joints
 from gearidae.scene.keys import scene_value
@@ -35,6 +37,15 @@ class Feature(NamedTuple):
 
     key: str
     is_in: Callable[[Scene], bool]
+
+
+def _of_law(law: ShaftLaw) -> Feature:
+    """Feature of a law of a shaft whose keys are those of the gears."""
+
+    def is_in(scene: Scene) -> bool:
+        return scene.gears is not None and any(has_law(scene, shaft, law) for shaft in (DRIVE, LOAD))
+
+    return Feature(f"gears.{SHAFT_NAMES[LOAD]}_{law.coefficients[0].name}", is_in)
 
 
 def _flanks_rub(scene: Scene, law: str) -> bool:
@@ -83,6 +94,7 @@ FEATURES: Final = {
     ),
     "held speed": Feature("drive.speed", lambda scene: scene.drive is not None and bool(scene.drive.speed)),
     "exposures": Feature("run.exposures", lambda scene: scene.run.exposures > 0),
+    **{law.name: _of_law(law) for law in SHAFT_LAWS if any(constant.key for constant in law.coefficients)},
 }
 """Features by their names."""
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
-from pydantic import Field, model_validator
+from pydantic import Field, create_model, model_validator
 
 from gearidae.errors import SceneError
+from gearidae.laws.law import SHAFT_NAMES
+from gearidae.laws.shafts import SHAFT_LAWS
 from gearidae.scene.group import Group, shorten
 from gearidae.scene.pitch_errors import PitchErrors
 from gearidae.scene.quantity import Count, Phase, Quantity, Switch
@@ -36,14 +38,22 @@ def disc_inertia(density: float, width: float, base_radius: float, pressure_angl
     return 0.5 * math.pi * density * width * (base_radius / math.cos(pressure_angle)) ** 4
 
 
-class Gears(Group):
-    """Two spur gears of full-depth involute teeth at their nominal centre distance.
+def _keys_of_laws() -> dict[str, Any]:
+    """Keys of the laws of a shaft, of either shaft."""
+    return {
+        f"{shaft}_{constant.name}": (
+            Annotated[float, Quantity(unit=key.unit, at_least=0, at_most=key.at_most, least=key.least)],
+            Field(default=0.0, description=key.description.format(shaft=shaft)),
+        )
+        for law in SHAFT_LAWS
+        for constant in law.coefficients
+        if (key := constant.key) is not None
+        for shaft in SHAFT_NAMES
+    }
 
-    Their size is given by the pinion's base radius, or by the module m in its place, from which it follows as
-    ``R1 = m z1 cos(alpha) / 2``: the pitch circle has the diameter ``m z1``, and the base circle is that times
-    ``cos(alpha)`` (ISO 21771). A scene keeps the radius. Moments of inertia may be those of solid discs as large as the
-    pitch circles and as thick as the face width, ``pi/2 density L (R / cos(alpha))^4``, by their density.
-    """
+
+class PairOfGears(Group):
+    """Teeth, inertias and joints of two gears: the keys of ``gears`` that are of no law of a shaft."""
 
     density: Annotated[float | None, Quantity(unit="kg/m^3", at_least=1, at_most=1e5)] = Field(
         default=None,
@@ -144,6 +154,23 @@ class Gears(Group):
             return kind.read(data[name])
         except ValueError as error:
             raise SceneError(name, shorten(data[name]), str(error)) from error
+
+
+if TYPE_CHECKING:
+    _WithLaws = PairOfGears
+else:
+    _WithLaws = create_model("_WithLaws", __base__=PairOfGears, __module__=__name__, **_keys_of_laws())
+
+
+class Gears(_WithLaws):
+    """Two spur gears of full-depth involute teeth at their nominal centre distance.
+
+    Their size is given by the pinion's base radius, or by the module m in its place, from which it follows as
+    ``R1 = m z1 cos(alpha) / 2``: the pitch circle has the diameter ``m z1``, and the base circle is that times
+    ``cos(alpha)`` (ISO 21771). A scene keeps the radius. Moments of inertia may be those of solid discs as large as the
+    pitch circles and as thick as the face width, ``pi/2 density L (R / cos(alpha))^4``, by their density. What else
+    acts on a shaft has the keys that its law declares (`gearidae.laws.shafts`), for either shaft.
+    """
 
 
 class StaticErrorHarmonic(Group):

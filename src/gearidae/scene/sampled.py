@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from gearidae.laws.shafts import sampled_laws
 from gearidae.records import Events, Passages, Rows, sampled_columns
 from gearidae.scene.joints import has_pin, joints
 
@@ -15,7 +16,7 @@ def columns_of(scene: Scene) -> tuple[str, ...]:
     """Names of the sampled columns of a scene."""
     contact, there = scene.contact, joints(scene)
     hubs = bool(there)
-    return sampled_columns(
+    columns = sampled_columns(
         roller=scene.roller is not None,
         bodies=contact.bodies,
         roughness=contact.roughness,
@@ -23,6 +24,7 @@ def columns_of(scene: Scene) -> tuple[str, ...]:
         pin=hubs and has_pin(scene),
         ages=any(joint.rise > 0.0 for joint in there),
     )
+    return columns if scene.gears is None else columns + sampled_laws(scene)
 
 
 def rows_of(scene: Scene) -> tuple[type[Rows], ...]:

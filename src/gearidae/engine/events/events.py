@@ -14,7 +14,7 @@ from typing import Final
 from gearidae.compiled import compiled
 from gearidae.engine.elastic.nodes import middle_gap
 from gearidae.engine.events.asperity_events import asperity_guard
-from gearidae.engine.events.law_switches import law_guard
+from gearidae.engine.events.law_switches import law_guard, shaft_guard
 from gearidae.engine.events.mesh_marks import cross_mark, crossed_mark, mark_guard, outruns_relief
 from gearidae.engine.events.pair_events import pair_guard
 from gearidae.engine.events.sliding import REVERSALS_HIGH, dry_guard
@@ -54,6 +54,8 @@ def guard(m: Model, t: float, y: Floats) -> float:
         least = min(least, dry_guard(m, t, y))
     if m.scene.law_switches != 0:
         least = min(least, law_guard(m, t, y))
+    if m.scene.guarded != 0:
+        least = min(least, shaft_guard(m, y))
     if m.state.flank_in_reach[COAST] == 0:
         least = min(least, nearest_gap(m, COAST, y) - m.scene.cutoff)
     if m.state.flank_in_reach[DRIVE] == 0:

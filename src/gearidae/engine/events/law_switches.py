@@ -1,4 +1,4 @@
-"""Where registered torque laws switch: knots in time, and zeros of a function of time, angle and speed."""
+"""Where laws switch: guards of the laws of a shaft; of registered torque laws knots in time, and zeros of a function."""
 
 from __future__ import annotations
 
@@ -7,9 +7,14 @@ from typing import Final
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
+from gearidae.engine.events.record import record
 from gearidae.engine.model.state import DRIVE, PHASE, Floats, Model, U, V, W
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.laws.shaft.own import SHIFT, law_misfit, switch_value
+from gearidae.laws.shafts import guard, switch
+from gearidae.records import Flank
+
+_NO_FLANK: Final = float(Flank.NONE)
 
 SHARE: Final = 0.5
 """Of the tolerance of a speed: impulse over the mass that a step may miss of a law that jumps in it."""
@@ -36,6 +41,41 @@ def set_law_window(m: Model) -> None:
 def _speed(m: Model, shaft: int, y: Floats) -> float:
     """Surface velocity of a shaft; the slope of the static error is left out."""
     return y[V] + y[W] if shaft == DRIVE else y[W]
+
+
+@compiled_once(SOLVER)
+def shaft_guard(m: Model, y: Floats) -> float:
+    """Least distance of all laws that act on the shafts to their next switch."""
+    least = math.inf
+    for shaft in range(2):
+        if m.scene.torque[shaft].acts != 0:
+            least = guard(m, shaft, torque_angle(m, shaft, y[U], y[PHASE]), _speed(m, shaft, y), least)
+    return least
+
+
+@compiled
+def set_shaft_sides(m: Model, y: Floats) -> None:
+    """Switch all laws that act on the shafts to a state at which a run begins: a continued run may have other keys."""
+    for shaft in range(2):
+        angle, speed = torque_angle(m, shaft, y[U], y[PHASE]), _speed(m, shaft, y)
+        while m.scene.torque[shaft].acts != 0 and switch(m, shaft, angle, speed, -1) >= 0:
+            pass
+
+
+@compiled
+def switch_shafts(m: Model, t: float, y: Floats, events: Floats, count: int) -> tuple[int, bool]:
+    """Switch all laws that act on the shafts whose guards have fallen; the new number of events, and whether any has.
+
+    Events are written as `gearidae.engine.events.record.record` does.
+    """
+    switched = False
+    for shaft in range(2):
+        angle, speed = torque_angle(m, shaft, y[U], y[PHASE]), _speed(m, shaft, y)
+        kind = switch(m, shaft, angle, speed, -1) if m.scene.torque[shaft].acts != 0 else -1
+        while kind >= 0:
+            count, switched = record(m, events, count, t, float(kind), 0, _NO_FLANK, 0.0), True
+            kind = switch(m, shaft, angle, speed, -1)
+    return count, switched
 
 
 @compiled

@@ -9,7 +9,14 @@ from gearidae.engine.compiling import SOLVER
 from gearidae.engine.events.asperity_events import record_switches, switch_asperities
 from gearidae.engine.events.events import ROOT, STOP, chatters, guard, handle_mesh
 from gearidae.engine.events.histories import accept
-from gearidae.engine.events.law_switches import laws_chatter, note_law_jump, set_law_sides, set_law_window
+from gearidae.engine.events.law_switches import (
+    laws_chatter,
+    note_law_jump,
+    set_law_sides,
+    set_law_window,
+    set_shaft_sides,
+    switch_shafts,
+)
 from gearidae.engine.events.pair_events import find_event, take_event
 from gearidae.engine.events.record import EVENTS_AT_ONCE
 from gearidae.engine.events.sliding import follow_creeping, follow_sliding
@@ -139,6 +146,9 @@ def handle(m: Model, t: float, y: Floats, yp: Floats, out: Output) -> bool:
     if m.scene.friction.on != 0:
         count, jumped = follow_sliding(m, t, y, events, count)
         restart |= jumped
+    if m.scene.guarded != 0:
+        count, jumped = switch_shafts(m, t, y, events, count)
+        restart |= jumped
     if m.scene.law_switches != 0 and set_law_sides(m, t, y):
         note_law_jump(m)
         restart = True
@@ -157,6 +167,8 @@ def prepare_start(m: Model, t: float, y: Floats, yp: Floats) -> None:
     set_law_window(m)
     if m.scene.law_switches != 0:
         set_law_sides(m, t, y)
+    if m.scene.guarded != 0:
+        set_shaft_sides(m, y)
     if m.scene.friction.ages != 0:
         begin_ageing(m, t, y)
     begin_rest(m, t, y)

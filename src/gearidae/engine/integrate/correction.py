@@ -45,4 +45,4 @@ def correct(m: Model, t: float, cj: float, y: Floats, yp: Floats, delta: Floats)
     delta[PHASE] = (turning * delta[W] - of_phase) * step
     own = s.by_pinion * s.slowing  # of the pinion, which is in its slope in v already
     slowing = 2.0 * (abs(s.pinion_v) + abs(s.gear_v) + abs(s.pinion_w - own) + abs(s.gear_w))
-    return abs(s.pinion_u) + abs(s.gear_u) + slowing * slowing
+    return abs(s.pinion_u) + abs(s.gear_u) + abs(s.gear_spring) + slowing * slowing

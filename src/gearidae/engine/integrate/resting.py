@@ -21,7 +21,7 @@ from gearidae.engine.model.state import DRIVE, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
 from gearidae.engine.pairs.mesh_error import error_at
 from gearidae.engine.pairs.shaft_angle import torque_angle
-from gearidae.laws.shafts import driving_force, is_steady
+from gearidae.laws.shafts import by_angle, is_steady, pinion_force
 
 _PASSES: Final = 2
 """Newton steps to the equilibrium, each of which is shorter than a tolerance."""
@@ -80,9 +80,13 @@ def _step_to_equilibrium(m: Model, t: float, y: Floats, v: float) -> float:
     """Newton step of a stopped pinion that has moved at `v`; infinite without an equilibrium that draws it back."""
     mesh = forces_at(m, t, y)
     share = 1.0 - error_at(m, y[U], y[PHASE]).pinion
-    push = driving_force(m, DRIVE, t, torque_angle(m, DRIVE, y[U], y[PHASE]), 0.0) - share * mesh.force
-    if mesh.force_u > 0.0:
-        return push / (share * mesh.force_u)
+    angle = torque_angle(m, DRIVE, y[U], y[PHASE])
+    push = pinion_force(m, t, angle, 0.0) - share * mesh.force
+    stiffness = share * mesh.force_u
+    if m.scene.torque[DRIVE].takes_angle != 0:
+        stiffness -= by_angle(m, DRIVE, angle, 0.0, -0.0) * m.scene.torque[DRIVE].angle_unit
+    if stiffness > 0.0:
+        return push / stiffness
     return 0.0 if push == 0.0 == v else np.inf
 
 

@@ -18,6 +18,7 @@ from gearidae.engine.model.record_types import (
     record_type,
 )
 from gearidae.records import COUNTERS, RUN_PARTS
+from gearidae.laws.shafts import SHAFT_LAWS
 from gearidae.records.energy import ENERGY_SUMS
 from gearidae.records.extremes import ASPERITY_COUNTS, FORCE_EXTREMES, SPEED_EXTREMES
 from gearidae.records.passages import SINCE_LAST
@@ -261,6 +262,16 @@ STATE_FIELDS: Final = (
         "segment", "the schedules' current segments: set at knots, never inside a step", shape=(SCHEDULES,)
     ),
     Quantity("energy", "energy balance", kind=ENERGY_SUMS),
+    Quantity(
+        "shaft",
+        "what laws of a shaft remember",
+        kind=tuple(
+            count(memory.name, memory.meaning, low=memory.low, high=memory.high)
+            for law in SHAFT_LAWS
+            for memory in law.memory
+        ),
+        shape=(2,),
+    ),
     Quantity("progress", "counters of the driver", kind=PROGRESS_FIELDS),
     Quantity("extremes", "extremes of the run", kind=EXTREMES_FIELDS),
     Quantity(

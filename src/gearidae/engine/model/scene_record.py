@@ -38,6 +38,8 @@ COVERAGE: Final = record_type(  # of one side's flanks
 
 TORQUE: Final = record_type(  # of a shaft
     ("takes_angle", INT),  # 1 if a torque depends on the shaft's angle
+    ("acts", INT),  # 1 if a law acts on it besides its driving torque
+    ("sampled", INT),  # 1, 2, 4.. added up of the laws whose torques are sampled
     ("angle_unit", REAL),  # unit of the shaft's angle: sigma over the base radius [rad]
     *(field for law in SHAFT_LAWS for field in law.fields),
     *((constant.name, REAL) for law in SHAFT_LAWS for constant in law.coefficients),
@@ -233,6 +235,8 @@ SCENE: Final = record_type(
     ("torque_omega", REAL),  # highest angular frequency of the torques that steps follow [rad/tau]
     ("longest_step", REAL),  # that harmonics, laws and cubic schedules allow; 0 for any [tau]
     ("largest_step", REAL),  # that the scene allows; 0 for any [tau]
+    ("guarded", INT),  # 1 if a law that acts on a shaft switches
+    ("law_columns", INT),  # columns of samples that laws of the shafts write [1]
     ("law_switches", INT),  # 1 if a law has a function whose zeros are where it switches
     ("law_watched", INT),  # 1 if it has, or says nothing of where it jumps, so that each step looks at it
     (

@@ -43,6 +43,9 @@ RESISTANCE: Final = record_type(  # the same of drag and damping, which are inte
     ("gear_travel", REAL),  # [sigma]
     ("gear_speed", REAL),  # [sigma/tau]
     ("gear_acceleration", REAL),  # [sigma/tau^2]
+    ("pinion_travel", REAL),  # where laws act on the pinion [sigma]
+    ("pinion_speed", REAL),  # [sigma/tau]
+    ("pinion_acceleration", REAL),  # [sigma/tau^2]
     ("mesh_travel", REAL),  # transmission error [sigma]
     ("mesh_speed", REAL),  # rate of the transmission error [sigma/tau]
     ("mesh_acceleration", REAL),  # [sigma/tau^2]
@@ -304,6 +307,7 @@ WORK: Final = record_type(
         INT,
         (2,),
     ),  # where the function lies whose zeros are where it switches; 0 without one [address]
+    ("elsewhere", INT),  # 1 while laws are asked of shafts that are not those of the run: of free gears
     ("law_side", REAL, (2,)),  # its sign since the last start [1]
     ("law_from", REAL),  # time of the last knot, just behind it [tau]
     ("law_until", REAL),  # and of the next, just before it; 0 outside a run [tau]

@@ -25,7 +25,7 @@ from gearidae.engine.pairs.tooth_pairs import (
     pair_gap,
 )
 from gearidae.engine.population.forces import asperities_joined
-from gearidae.laws.shafts import driving_force
+from gearidae.laws.shafts import driving_force, write_samples
 from gearidae.records.columns import GEAR, GEAR_POPULATION, ROLLER, ROLLER_POPULATION
 
 
@@ -65,11 +65,11 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
     row[GEAR.gear_angle] = angle_of_shaft(m, LOAD, u, phase)
     row[GEAR.transmission_error] = u * length
     row[GEAR.mesh_force] = force * m.scene.force_unit
-    contact, width = (1.0 + e.gear) * force + mesh.relief, row.size
+    contact, width = (1.0 + e.gear) * force + mesh.relief, row.size - m.scene.law_columns
     if m.scene.friction.rubs != 0:
         friction, resistance, loads = friction_at_gear(m, t, y)
         contact += friction
-        width -= _write_joints(m, loads, t, y, row)
+        width -= _write_joints(m, loads, t, y, row[:width])
     elif m.state.hold == FREE:
         resistance = resisting_force(m, t, y)
     else:
@@ -93,6 +93,9 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
     row[GEAR.drive_torque] = drive * unit * m.scene.pinion_radius
     row[GEAR.load_torque] = resistance * unit * radius
     row[GEAR.pinion_angle] = angle_of_shaft(m, DRIVE, u, phase)
+    if m.scene.law_columns != 0:
+        place = write_samples(m, DRIVE, t, row[GEAR.pinion_angle], turn, row, row.size - m.scene.law_columns)
+        write_samples(m, LOAD, t, row[GEAR.gear_angle], w, row, place)
     if m.scene.population.flanks != 0:
         row[GEAR_POPULATION.asperities_in_contact], row[GEAR.pairs_in_contact] = asperities_joined(m)
     elif width > GEAR.min_separation:

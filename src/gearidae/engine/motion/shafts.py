@@ -22,13 +22,13 @@ from gearidae.engine.motion.pair_forces import forces_at
 from gearidae.engine.pairs.mesh_error import MeshError, speed_and_error
 from gearidae.engine.pairs.pair_force import MeshForces
 from gearidae.engine.pairs.shaft_angle import torque_angle
-from gearidae.laws.shafts import by_speed, driving_force
+from gearidae.laws.shafts import by_angle, by_speed, pinion_force
 
 name_type(Slopes(*(0.0,) * 11), "Slopes")
 
 
 class Shafts(NamedTuple):
-    """Both shafts at a state, without friction and resistance at the gear.
+    """Both shafts at a state, without friction and without what acts on the gear's shaft.
 
     Attributes
     ----------
@@ -51,7 +51,7 @@ def shafts_at(m: Model, t: float, y: Floats, mesh: MeshForces) -> Shafts:
     """Put the forces of the mesh, its damping and the torques on the pinion on both shafts."""
     force = mesh.force + m.scene.damping * y[V]
     turn, e = speed_and_error(m, y)
-    drive = driving_force(m, DRIVE, t, torque_angle(m, DRIVE, y[U], y[PHASE]), turn)
+    drive = pinion_force(m, t, torque_angle(m, DRIVE, y[U], y[PHASE]), turn)
     return Shafts(turn, drive - (1.0 - e.pinion) * force, (1.0 + e.gear) * force + mesh.relief, e)
 
 
@@ -86,6 +86,8 @@ class AccelerationSlopes(NamedTuple):
         Inverse mass matrix of what is free to move: entries of the pinion, off the diagonal, and of the gear.
     slowing : float
         Slope in the pinion's own speed of the torque on it, which is in both its slopes.
+    gear_spring : float
+        Slope of the gear's acceleration in its own travel, of the laws of its shaft, which is in that of the phase.
     """
 
     pinion_u: float
@@ -100,6 +102,7 @@ class AccelerationSlopes(NamedTuple):
     by_both: float
     by_gear: float
     slowing: float
+    gear_spring: float
 
 
 @compiled_once(FRICTION)
@@ -139,12 +142,22 @@ def acceleration_slopes(m: Model, y: Floats, mesh: MeshForces) -> AccelerationSl
         f = _friction_slopes(m, y)
     turn, damping = y[V] + y[W], m.scene.damping
     pinion_u, pinion_phase = f.pinion_u - mesh.force_u, f.pinion_phase - mesh.force_phase
-    slowing = by_speed(m, DRIVE, torque_angle(m, DRIVE, y[U], y[PHASE]), turn, -0.0)
+    angle = torque_angle(m, DRIVE, y[U], y[PHASE])
+    slowing = by_speed(m, DRIVE, angle, turn, -0.0)
     pinion_v, pinion_w = slowing - (damping + mesh.force_v), slowing - mesh.force_w
     gear_u = f.gear_u + mesh.force_u + mesh.relief_u
     gear_phase = f.gear_phase + mesh.force_phase + mesh.relief_phase
     gear_v = damping + mesh.force_v + mesh.relief_v
-    gear_w = by_speed(m, LOAD, torque_angle(m, LOAD, y[U], y[PHASE]), y[W], mesh.force_w + mesh.relief_w)
+    if m.scene.torque[DRIVE].takes_angle != 0:
+        of_travel = by_angle(m, DRIVE, angle, turn, -0.0) * m.scene.torque[DRIVE].angle_unit
+        pinion_u += of_travel
+        pinion_phase += of_travel / m.scene.phase_rate
+    angle = torque_angle(m, LOAD, y[U], y[PHASE])
+    gear_w = by_speed(m, LOAD, angle, y[W], mesh.force_w + mesh.relief_w)
+    gear_spring = 0.0
+    if m.scene.torque[LOAD].takes_angle != 0:
+        gear_spring = by_angle(m, LOAD, angle, y[W], -0.0) * m.scene.torque[LOAD].angle_unit
+        gear_phase += gear_spring / m.scene.phase_rate
     a, b, c = f.by_pinion, f.by_both, f.by_gear
     return AccelerationSlopes(
         a * pinion_u + b * gear_u,
@@ -159,6 +172,7 @@ def acceleration_slopes(m: Model, y: Floats, mesh: MeshForces) -> AccelerationSl
         b,
         c,
         slowing,
+        c * gear_spring,
     )
 
 

@@ -19,7 +19,7 @@ along the path of contact, and with it the number of asperities in touch, while 
 does no work for that: the model has no force for it (Teodorescu et al. 2009, Eqs. 4-6 and 13). It is named here, the
 work of the changing radius, and integrated like the others. So
 
-    drive + radius = drag + dry + friction + damping + adhesion + stored + kinetic
+    drive + radius = drag + dry + friction + damping + adhesion + losses of laws + stored + kinetic
 
 but for the errors of integration, which is what the balance's residual measures.
 
@@ -59,7 +59,7 @@ from gearidae.formulas.quadrature import (
     integral_of_square,
     torque_work,
 )
-from gearidae.laws.shafts import book_losses, driving_force, driving_rate, is_constant
+from gearidae.laws.shafts import book_losses, driving_force, driving_rate, is_constant, stored
 
 ORDER: Final = 4
 """Order of the quadrature."""
@@ -70,7 +70,18 @@ def open_balance(m: Model, y: Floats) -> None:
     """Note the energies at the start; the kinetic energy counts as exchanged, as speeds have absolute tolerances."""
     e = m.state.energy
     e.start_stored = stored_energy(m, y)[0]
+    e.start_shafts = _stored_in_shafts(m, y)
     e.start_kinetic = e.throughput = e.peak_kinetic = kinetic_energy(m, y)
+
+
+@compiled
+def _stored_in_shafts(m: Model, y: Floats) -> float:
+    """Energy that laws of both shafts store."""
+    energy = 0.0
+    for shaft in range(2):
+        if m.scene.torque[shaft].acts != 0:
+            energy = stored(m, shaft, torque_angle(m, shaft, y[U], y[PHASE]), energy)
+    return energy
 
 
 @compiled
@@ -139,7 +150,7 @@ def _can_wait(m: Model, t: float, y: Floats) -> bool:
     """
     if m.scene.nodes > 0 or m.state.bound_exceeded != 0:
         return False
-    if m.scene.population.flanks != 0 or m.scene.friction.rubs != 0:  # forces jump
+    if m.scene.population.flanks != 0 or m.scene.friction.rubs != 0 or m.scene.guarded != 0:  # forces jump
         return False
     if in_flight(m) or t - m.work.quadrature.time > m.scene.quadrature_time:
         return False
@@ -287,7 +298,12 @@ def _accumulate_losses(m: Model, t: float, y: Floats, yp: Floats) -> None:
         return
     gear, w, w_rate = y[PHASE] / m.scene.phase_rate, y[W], yp[W]
     e, turn = m.state.energy, Ends(r.gear_speed, r.gear_acceleration, w, w_rate)
-    taken = book_losses(m, LOAD, h, gear - r.gear_travel, turn)
+    taken = book_losses(m, LOAD, h, torque_angle(m, LOAD, y[U], y[PHASE]), gear - r.gear_travel, turn)
+    if m.scene.torque[DRIVE].acts != 0:
+        travel, speed, acceleration = _pinion(m, y, yp)
+        ends = Ends(r.pinion_speed, r.pinion_acceleration, speed, acceleration)
+        angle = torque_angle(m, DRIVE, y[U], y[PHASE])
+        taken += book_losses(m, DRIVE, h, angle, travel - r.pinion_travel, ends)
     if m.scene.damping != 0.0:
         mesh = Ends(r.mesh_speed, r.mesh_acceleration, y[V], yp[V])
         square, error = integral_of_square(h, y[U] - r.mesh_travel, mesh)
@@ -310,6 +326,8 @@ def _note_resistance(m: Model, t: float, gear: float, y: Floats, yp: Floats) -> 
     r.time, r.gear_travel = t, gear
     r.gear_speed, r.gear_acceleration = y[W], yp[W]
     r.mesh_travel, r.mesh_speed, r.mesh_acceleration = y[U], y[V], yp[V]
+    if m.scene.torque[DRIVE].acts != 0:
+        r.pinion_travel, r.pinion_speed, r.pinion_acceleration = _pinion(m, y, yp)
 
 
 @compiled
@@ -318,6 +336,7 @@ def note_changes(m: Model, y: Floats) -> tuple[float, float]:
     e, now = m.state.energy, m.work.energy_now
     (stored, pending), lag = stored_energy(m, y), joining_lag(m)
     now.stored_change = stored - pending - e.start_stored
+    now.shaft_change = _stored_in_shafts(m, y) - e.start_shafts
     now.kinetic_change = kinetic_energy(m, y) - e.start_kinetic
     return pending - lag, -lag if m.scene.curvature_force == 0 else 0.0
 
@@ -337,7 +356,7 @@ def look(m: Model, t: float, y: Floats) -> None:
     e.adhesion_loss += adhesion
     e.radius_work += radius
     e.quadrature_error += e.loss_error
-    now.largest = e.peak_kinetic + abs(e.start_stored) + abs(e.model_change)
+    now.largest = e.peak_kinetic + abs(e.start_stored) + abs(e.start_shafts) + abs(e.model_change)
     if m.scene.gear_inverse_mass != 0.0:  # a gear that is held has neither travel nor speed
         pinion, gear, twice = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass, 2.0 * e.peak_kinetic
         now.pitch_work = 2.0 / m.scene.phase_rate  # both shafts' torques are at most the unit of force

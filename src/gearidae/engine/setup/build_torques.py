@@ -11,7 +11,8 @@ from gearidae.engine.setup.tables import Tables
 from gearidae.laws.shaft.harmonic import common_period, pack_harmonics
 from gearidae.laws.shaft.own import largest_torque, law_knots
 from gearidae.laws.shaft.schedule import LEAST_CUBIC, fastest_schedule, pack_schedule, steep_knots
-from gearidae.laws.shafts import SHAFT_LAWS
+from gearidae.laws.law import number_of
+from gearidae.laws.shafts import SAMPLED, SHAFT_LAWS, has_law, sampled_laws
 from gearidae.scene import Drive, GearScene, Knots, Load, Scene
 from gearidae.torques import torque_law
 
@@ -76,9 +77,18 @@ def add_torques(s: Record, tables: Tables, scene: GearScene, begin: float) -> No
         waves.append(np.array(pack_harmonics(harmonics, tau, unit)))
         orders = [(h.amplitude / unit, h.order, h.phase) for h in law.harmonic if h.order is not None]
         torque.constant = law.torque / unit
-        for constant in (constant for known in SHAFT_LAWS for constant in known.coefficients):
-            value = getattr(law, constant.name, 0.0)
-            torque[constant.name] = constant.scaled(value, radius, float(s.length_unit) / tau, force)
+        for known in SHAFT_LAWS:
+            for constant in known.coefficients:
+                of_gears = constant.key is not None
+                value = (
+                    number_of(scene, shaft, constant.name) if of_gears else getattr(law, constant.name, 0.0)
+                )
+                torque[constant.name] = constant.scaled(value, radius, float(s.length_unit) / tau, force)
+                torque.acts |= int(not known.drives and value != 0.0)
+            if has_law(scene, shaft, known):
+                s.guarded |= int(known.guard is not None)
+                torque.takes_angle |= int(known.by_angle is not None)
+        torque.sampled = sum(1 << k for k, known in enumerate(SAMPLED) if has_law(scene, shaft, known))
         torque.harmonic_count, torque.harmonics_at = len(harmonics), tables.add(waves[-1])
         torque.law_torque, torque.law_speed = unit, float(s.length_unit) / tau / radius
         torque.order_count, torque.orders_at = len(orders), tables.add([x for term in orders for x in term])
@@ -110,6 +120,7 @@ def add_torques(s: Record, tables: Tables, scene: GearScene, begin: float) -> No
         if s.schedule[which].cubic:
             omega = fastest_schedule(s.schedule[which], tables.whole(), 0.0)
             fastest = max(fastest, omega / (2.0 * math.pi * tau))
+    s.law_columns = len(sampled_laws(scene))
     set_run(s, tables, scene, knots, begin)
     _set_looks(s, waves, scene)
     # a torque that knows the motion vibrates with it, and is looked at in each step

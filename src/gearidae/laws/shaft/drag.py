@@ -24,7 +24,7 @@ def _by_speed(m: Model, shaft: int, angle: float, speed: float, value: float) ->
 
 
 @compiled(inline=True)
-def _loss(m: Model, shaft: int, h: float, travel: float, turn: Ends, value: float) -> float:
+def _loss(m: Model, shaft: int, h: float, angle: float, travel: float, turn: Ends, value: float) -> float:
     e, torque = m.state.energy, m.scene.torque[shaft]
     if torque.drag != 0.0:
         cube, error = integral_of_cube(h, travel, turn)

@@ -19,7 +19,7 @@ from gearidae.engine.pairs.mesh_error import pinion_acceleration, speed_and_erro
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.pairs.tooth_pairs import in_flight
 from gearidae.formulas.interpolation import cubic, quintic, vertex
-from gearidae.laws.shafts import driving_force
+from gearidae.laws.shafts import pinion_force
 
 NEAR_RECORD: Final = 0.1
 """Share of a record by which the parabola may miss it: it has been seen to be out by 3 % at loose tolerances."""
@@ -42,7 +42,7 @@ def force_of_motion(m: Model, t: float, y: Floats, yp: Floats) -> float:
     if m.scene.friction.rubs != 0:
         return _force_with_friction(m, t, y)
     turn, e = speed_and_error(m, y)
-    drive = driving_force(m, DRIVE, t, torque_angle(m, DRIVE, y[U], y[PHASE]), turn)
+    drive = pinion_force(m, t, torque_angle(m, DRIVE, y[U], y[PHASE]), turn)
     acceleration = pinion_acceleration(e, turn, y[W], yp[V], yp[W])
     return (drive - acceleration / m.scene.pinion_inverse_mass) / (1.0 - e.pinion)
 

@@ -324,7 +324,7 @@ def _hardest(m: Model, t: float) -> float:
         longest = max(m.scene.free_step, longest / LOOKS_AHEAD)
     while True:
         knot = enter_segments(m, t, m.scene.end)
-        size = largest_excess(m, SPARE, t, t)
+        size = largest_excess(m, SPARE, t, t, 0.0)
         if size > most + 1e-9 * abs(most) or most == -math.inf:
             most, time = size, t
         if t >= m.scene.end:

@@ -1,6 +1,6 @@
 """Free gears: both shafts under their torques, joined without backlash, adhesion and friction.
 
-    (m1 + m2) w' = F1 - F2 - drags,    with the dry part of F2 set-valued at w = 0,
+    (m1 + m2) w' = F1 - F2 + what acts on either shaft,    with the dry part of F2 set-valued at w = 0,
 
 scaled and over the base radii. They are at rest at a zero of the real gear's speed and have its angles. Steps are those
 of Shampine and Reichelt's Rosenbrock pair of order two (SIAM J. Sci. Comput. 18, 1997), which a stiff drive does not
@@ -22,6 +22,7 @@ from gearidae.engine.observers.standing.free_torques import (
     excess,
     free_torque,
     largest_excess,
+    push_on_free,
 )
 from gearidae.formulas.interpolation import cubic
 from gearidae.laws.shaft.schedule import straight_until
@@ -64,9 +65,9 @@ def _follow_piece(m: Model, i: int, t: float, stop: float, enough: float) -> flo
     while t < stop and z.free_farthest < enough:
         ahead = straight_until(m, t, stop)
         if w == 0.0:
-            push = free_torque(m, i, DRIVE, t, x, 0.0)
+            push = push_on_free(m, i, t, x)
             if abs(push) <= free_torque(m, i, LOAD, t, x, 0.0) + NO_FORCE:
-                after = _certain_rest(m, i, t, ahead)
+                after = _certain_rest(m, i, x, t, ahead)
                 if after == t:
                     after = min(max(_rests_until(m, i, x, t, min(ahead, t + longest)), t + least), stop)
                 _accumulate_drive(m, i, t, after)
@@ -104,7 +105,7 @@ def _follow_piece(m: Model, i: int, t: float, stop: float, enough: float) -> flo
 def _acceleration(m: Model, i: int, t: float, x: float, w: float, sign: float) -> float:
     """Acceleration of the base circles of free gears that turn in a direction."""
     force = free_torque(m, i, DRIVE, t, x, w) - sign * free_torque(m, i, LOAD, t, x, w)
-    force += acting_on_free(m, i, LOAD, t, x, w)
+    force += acting_on_free(m, i, t, x, w)
     return force / (1.0 / m.scene.pinion_inverse_mass + 1.0 / m.scene.gear_inverse_mass)
 
 
@@ -119,7 +120,7 @@ def _step(
     small = 1e-5 * (abs(w) + abs(h * f0)) + 1e-200
     by_w = (_acceleration(m, i, t, x, w + small, sign) - f0) / small
     by_x = 0.0
-    if m.scene.angle_omega > 0.0:
+    if m.scene.torque[DRIVE].takes_angle != 0 or m.scene.torque[LOAD].takes_angle != 0:
         by_x = (_acceleration(m, i, t, x + 1e-6, w, sign) - f0) / 1e-6
     d = _D * h
     k1, j1 = _solve(d, by_w, by_x, rate, f0 + d * by_t, rate * w)
@@ -188,11 +189,11 @@ def _share_until(h: float, x0: float, rate0: float, x1: float, rate1: float, eno
 
 
 @compiled
-def _certain_rest(m: Model, i: int, t: float, to: float) -> float:
+def _certain_rest(m: Model, i: int, x: float, t: float, to: float) -> float:
     """Time up to which bounds of both torques say that free gears stay at rest; `t` if they do not say so."""
     if m.work.torque_law[DRIVE] != 0 or m.work.torque_law[LOAD] != 0:
         return t
-    return to if largest_excess(m, i, t, to) <= 0.0 else t
+    return to if largest_excess(m, i, t, to, x) <= 0.0 else t
 
 
 @compiled
@@ -213,7 +214,7 @@ def _rests_until(m: Model, i: int, x: float, t: float, end: float) -> float:
 @compiled
 def _overcomes(m: Model, i: int, x: float, t: float) -> float:
     """Force beyond the dry resistance of free gears at rest."""
-    push, limit = free_torque(m, i, DRIVE, t, x, 0.0), free_torque(m, i, LOAD, t, x, 0.0)
+    push, limit = push_on_free(m, i, t, x), free_torque(m, i, LOAD, t, x, 0.0)
     return abs(push) - limit - NO_FORCE
 
 

@@ -34,24 +34,37 @@ def free_torque(m: Model, i: int, shaft: int, t: float, travel: float, speed: fl
 
 
 @compiled
-def acting_on_free(m: Model, i: int, shaft: int, t: float, travel: float, speed: float) -> float:
-    """What acts on a shaft of free gears besides the driving torque and the dry resistance, scaled."""
-    return float(acting(m, shaft, t, _angle(m, i, shaft, travel), speed, -0.0))
+def acting_on_free(m: Model, i: int, t: float, travel: float, speed: float) -> float:
+    """What acts on both shafts of free gears besides the driving torque and the dry resistance, scaled."""
+    m.work.elsewhere = 1  # laws have no memory of these shafts
+    force = acting(m, LOAD, t, _angle(m, i, LOAD, travel), speed, -0.0)
+    if m.scene.torque[DRIVE].acts != 0:
+        force = acting(m, DRIVE, t, _angle(m, i, DRIVE, travel), speed, force)
+    m.work.elsewhere = 0
+    return float(force)
+
+
+@compiled
+def push_on_free(m: Model, i: int, t: float, travel: float) -> float:
+    """What pushes free gears at rest against the dry resistance, scaled."""
+    return float(free_torque(m, i, DRIVE, t, travel, 0.0) + acting_on_free(m, i, t, travel, 0.0))
 
 
 @compiled
 def excess(m: Model, i: int, t: float) -> float:
-    """Size of the drive less the dry resistance, of a gear that stands at a zero, scaled."""
-    return abs(free_torque(m, i, DRIVE, t, 0.0, 0.0)) - free_torque(m, i, LOAD, t, 0.0, 0.0)
+    """Size of what pushes a gear that stands at a zero, less the dry resistance, scaled."""
+    return abs(push_on_free(m, i, t, 0.0)) - free_torque(m, i, LOAD, t, 0.0, 0.0)
 
 
 @compiled
-def largest_excess(m: Model, i: int, t: float, to: float) -> float:
-    """Bound of the same over a time in which schedules go one way, with all harmonics at their amplitudes.
+def largest_excess(m: Model, i: int, t: float, to: float, travel: float) -> float:
+    """Bound of the excess at rest over a time in which schedules go one way, with all harmonics at their amplitudes.
 
     Of a law the bound is that of its present value.
     """
     low, high = driving_range(m, DRIVE, t, to, _angle(m, i, DRIVE, 0.0))
+    held = acting_on_free(m, i, t, travel, 0.0)
+    low, high = low + held, high + held
     load = driving_range(m, LOAD, t, to, _angle(m, i, LOAD, 0.0))[0] if m.scene.dry != 0 else 0.0
     return max(abs(low), abs(high)) - max(load, 0.0)
 
