@@ -7,11 +7,14 @@ import pytest
 
 import gearidae as gd
 from balances import assert_balanced
+from gearidae.analysis.verdict import outcomes
 from gearidae.engine import solve
 from gearidae.engine.setup.build import make_problem
 from gearidae.laws.law import DRIVE, LOAD
 from gearidae.laws.shaft.spring import SPRING
 from gearidae.records import EventKind
+from gearidae.runs.estimates import balanced_speed
+from reference.own_pair import OWN_PAIR
 
 DRIVERS = ("native", "sksundae")
 SPEEDS = {"pinion": 6.0, "gear": 1.5}
@@ -21,6 +24,22 @@ KINDS = {
     "gear": (EventKind.GEAR_SPRING_CONTACT, EventKind.GEAR_SPRING_RELEASE),
 }
 HIT, OMEGA, RATIO = 2e-4, 1e3, 0.2
+TIED = gd.Scene.from_dict(
+    OWN_PAIR
+    | {
+        "surface": {
+            "youngs_modulus": 161e9,
+            "poisson_ratio": 0.23,
+            "energy": 1.5,
+            "asperity_density": 169e12,
+            "asperity_radius": 450e-9,
+            "roughness": 6e-9,
+        },
+        "coating": {"sam_fraction": 1.0, "energy": 0.1},
+        "drive": {"torque": 1.2e-17},
+        "run": {"duration": 10.0, "samples": 3, "rtol": 1e-6},
+    }
+)
 
 
 def spring(shaft, play=None):
@@ -44,7 +63,9 @@ def closed_form(shaft, time):
     w = speed * decay * (np.cos(ringing * s) - fade / ringing * np.sin(ringing * s))
     w_left = -speed * math.exp(-fade * (release - HIT))
     touches, left = (time > HIT) & (time < release), time >= release
-    angle = np.where(time < HIT, speed * time, np.where(left, play + w_left * (time - release), play + deflection))
+    angle = np.where(
+        time < HIT, speed * time, np.where(left, play + w_left * (time - release), play + deflection)
+    )
     w = np.where(time < HIT, speed, np.where(left, w_left, w))
     torque = np.where(touches, -inertia * (OMEGA**2 * deflection + 2.0 * fade * w), 0.0)
     energy = 0.5 * inertia * (w**2 + np.where(touches, OMEGA * deflection, 0.0) ** 2)
@@ -58,7 +79,11 @@ def test_a_shaft_flies_into_its_spring_and_out_again(flight, shaft, backend):
     run = solve(scene, backend=backend)
     angle, speed, torque, lost, release = closed_form(shaft, run.time)
     # twenty tolerances of a step, over some hundred steps and two restarts
-    for name, values in ((f"{shaft}_angle", angle), (f"{shaft}_speed", speed), (f"{shaft}_spring_torque", torque)):
+    for name, values in (
+        (f"{shaft}_angle", angle),
+        (f"{shaft}_speed", speed),
+        (f"{shaft}_spring_torque", torque),
+    ):
         # the event at the sample of the hit itself may lie to either side of it
         there = np.abs(run.time - HIT) > 1e-9
         np.testing.assert_allclose(
@@ -116,3 +141,36 @@ def test_units_are_read(flight):
     scene = flight.replace({"gears.gear_spring": "2 pN m/rad", "gears.gear_spring_play": "1 deg"})
     assert scene.gears.gear_spring == pytest.approx(2e-12, rel=1e-15, abs=0)
     assert scene.gears.gear_spring_play == pytest.approx(math.radians(1.0), rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    "tie",
+    [
+        {"gears.gear_spring": 2e-17, "gears.gear_spring_damping": 1e-18},
+        {"gears.gear_spring": 2e-17, "gears.gear_spring_damping": 1e-18, "gears.gear_spring_play": 1.0},
+        {"gears.pinion_spring": 2e-18, "gears.pinion_spring_damping": 5e-20, "gears.pinion_spring_play": 0.5},
+    ],
+)
+@pytest.mark.parametrize("load", [0.0, 3e-18])
+def test_a_coated_pair_that_a_spring_holds_stops(tie, load):
+    """The drive goes on to exceed the load, but free gears hang in the same spring."""
+    scene = TIED.replace(tie | {"load.torque": load})
+    ds = gd.simulate(scene)
+    (outcome,) = outcomes(ds)
+    assert outcome.verdict == "stops"
+    assert not outcome.holding.by_adhesion
+    assert balanced_speed(scene, scene.drive.torque) == 0.0
+    assert_balanced(ds.gearidae.energy_balance, scene)
+    if load == 0.0:
+        assert outcome.held_by == "a shaft's tie to the ground"
+        shaft = "gear" if "gears.gear_spring" in tie else "pinion"
+        ratio = 3.0 if shaft == "gear" else 1.0
+        rest = tie.get(f"gears.{shaft}_spring_play", 0.0) + ratio * 1.2e-17 / tie[f"gears.{shaft}_spring"]
+        assert float(ds[f"{shaft}_angle"][-1]) == pytest.approx(rest, rel=1e-2)
+        assert float(ds[f"{shaft}_spring_torque"][-1]) == pytest.approx(-ratio * 1.2e-17, rel=1e-2, abs=0)
+
+
+def test_without_its_spring_the_coated_pair_turns():
+    (outcome,) = outcomes(gd.simulate(TIED))
+    assert outcome.verdict == "turns smoothly"
+    assert 0.0 < balanced_speed(TIED, TIED.drive.torque) < math.inf

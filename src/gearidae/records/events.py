@@ -18,7 +18,7 @@ from gearidae.records.rows import FLAG, RowColumn, Rows, places
 class EventKind(IntEnum):
     """Kind of an event, as stored in ``event_kind``; those of laws of a shaft are declared by them."""
 
-    _ignore_ = ("shaft", "declared")
+    _ignore_ = "shaft declared"
 
     ONSET = 0
     SEPARATION = 1

@@ -31,12 +31,14 @@ class Holding(IntFlag):
     PIN_FRICTION = 16
     AXIAL_LOAD = 32
     DRIVE_WELL = 64
+    SHAFT_TIE = 128
 
     @property
     def words(self) -> str:
         """Names of all that hold it."""
         names = ((part.name or "").lower().replace("_", " ") for part in Holding if part in self)
-        return " and ".join("the drive's own well" if name == "drive well" else name for name in names)
+        spoken = {"drive well": "the drive's own well", "shaft tie": "a shaft's tie to the ground"}
+        return " and ".join(spoken.get(name, name) for name in names)
 
     @property
     def by_adhesion(self) -> bool:
@@ -46,7 +48,7 @@ class Holding(IntFlag):
     @property
     def by_friction(self) -> bool:
         """Whether dry resistance or friction has a part in it."""
-        return bool(self & ~(Holding.ADHESION | Holding.DRIVE_WELL))
+        return bool(self & ~(Holding.ADHESION | Holding.DRIVE_WELL | Holding.SHAFT_TIE))
 
 
 _time, _advance = partial(Quantity, unit=SECONDS, archive=True), partial(Quantity, unit=PITCHES, archive=True)

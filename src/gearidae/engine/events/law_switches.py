@@ -1,4 +1,4 @@
-"""Where laws switch: guards of the laws of a shaft; of registered torque laws knots in time, and zeros of a function."""
+"""Where laws switch: guards of the laws of a shaft; of registered torque laws knots and zeros of a function."""
 
 from __future__ import annotations
 

@@ -17,8 +17,8 @@ from gearidae.engine.model.record_types import (
     STUCK,
     record_type,
 )
-from gearidae.records import COUNTERS, RUN_PARTS
 from gearidae.laws.shafts import SHAFT_LAWS
+from gearidae.records import COUNTERS, RUN_PARTS
 from gearidae.records.energy import ENERGY_SUMS
 from gearidae.records.extremes import ASPERITY_COUNTS, FORCE_EXTREMES, SPEED_EXTREMES
 from gearidae.records.passages import SINCE_LAST

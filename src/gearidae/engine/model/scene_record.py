@@ -235,6 +235,7 @@ SCENE: Final = record_type(
     ("torque_omega", REAL),  # highest angular frequency of the torques that steps follow [rad/tau]
     ("longest_step", REAL),  # that harmonics, laws and cubic schedules allow; 0 for any [tau]
     ("largest_step", REAL),  # that the scene allows; 0 for any [tau]
+    ("tied", INT),  # 1 if a law keeps the shafts from turning on for ever
     ("guarded", INT),  # 1 if a law that acts on a shaft switches
     ("law_columns", INT),  # columns of samples that laws of the shafts write [1]
     ("law_switches", INT),  # 1 if a law has a function whose zeros are where it switches

@@ -8,11 +8,11 @@ import numpy as np
 
 from gearidae.engine.model.state import DRIVE, LOAD, SPEED, STOPS, Floats, Record
 from gearidae.engine.setup.tables import Tables
+from gearidae.laws.law import number_of
 from gearidae.laws.shaft.harmonic import common_period, pack_harmonics
 from gearidae.laws.shaft.own import largest_torque, law_knots
 from gearidae.laws.shaft.schedule import LEAST_CUBIC, fastest_schedule, pack_schedule, steep_knots
-from gearidae.laws.law import number_of
-from gearidae.laws.shafts import SAMPLED, SHAFT_LAWS, has_law, sampled_laws
+from gearidae.laws.shafts import SAMPLED, SHAFT_LAWS, has_law, is_held, sampled_laws
 from gearidae.scene import Drive, GearScene, Knots, Load, Scene
 from gearidae.torques import torque_law
 
@@ -120,6 +120,7 @@ def add_torques(s: Record, tables: Tables, scene: GearScene, begin: float) -> No
         if s.schedule[which].cubic:
             omega = fastest_schedule(s.schedule[which], tables.whole(), 0.0)
             fastest = max(fastest, omega / (2.0 * math.pi * tau))
+    s.tied = int(is_held(scene))
     s.law_columns = len(sampled_laws(scene))
     set_run(s, tables, scene, knots, begin)
     _set_looks(s, waves, scene)

@@ -133,7 +133,9 @@ def _holding(m: Model, at_rest: bool, held: float, in_well: bool) -> Holding:
     """What holds a gear that stands: dry friction, if it is at rest; adhesion or its well, if that is not enough."""
     dry = Holding(int(m.scene.friction.holding))
     if in_well:
-        return dry if at_rest else Holding.DRIVE_WELL
+        if at_rest:
+            return dry
+        return Holding.SHAFT_TIE if m.scene.tied != 0 else Holding.DRIVE_WELL
     holding = dry if at_rest else Holding(0)
     if not at_rest or (held > 0.0 and not dry & ~Holding.DRY_RESISTANCE):
         holding |= Holding.ADHESION
