@@ -24,6 +24,7 @@ from gearidae.records import (
     EventKind,
     Statistics,
 )
+from gearidae.records.columns import HUB_FRICTION_COLUMNS, LAW_SAMPLES, PIN_FRICTION_COLUMNS
 from gearidae.records.energy import TERMS
 from gearidae.runs.running import unsolved
 
@@ -74,7 +75,10 @@ def layout_of(ds: xr.Dataset) -> dict[str, tuple[str, str]]:
 
 
 def test_catalogue_knows_every_column_of_the_engine():
-    columns = (GEAR_COLUMNS, ROLLER_COLUMNS, ELASTIC_COLUMNS, POPULATION_COLUMNS, HUB_COLUMNS, PIN_COLUMNS)
+    columns = (
+        *(GEAR_COLUMNS, ROLLER_COLUMNS, ELASTIC_COLUMNS, POPULATION_COLUMNS, HUB_COLUMNS, PIN_COLUMNS),
+        *(HUB_FRICTION_COLUMNS, PIN_FRICTION_COLUMNS, [column.name for column in LAW_SAMPLES]),
+    )
     assert set(SAMPLES) == {name for names in columns for name in names}
 
 

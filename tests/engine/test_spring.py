@@ -13,6 +13,7 @@ from gearidae.engine.setup.build import make_problem
 from gearidae.laws.law import DRIVE, LOAD
 from gearidae.laws.shaft.spring import SPRING
 from gearidae.records import EventKind
+from gearidae.records.energy import GEAR_BOUND
 from gearidae.runs.estimates import balanced_speed
 from reference.own_pair import OWN_PAIR
 
@@ -160,7 +161,8 @@ def test_a_coated_pair_that_a_spring_holds_stops(tie, load):
     assert outcome.verdict == "stops"
     assert not outcome.holding.by_adhesion
     assert balanced_speed(scene, scene.drive.torque) == 0.0
-    assert_balanced(ds.gearidae.energy_balance, scene)
+    balance = ds.gearidae.energy_balance
+    assert abs(balance["residual"]) < GEAR_BOUND * scene.run.rtol * balance["drive_work"]
     if load == 0.0:
         assert outcome.held_by == "a shaft's tie to the ground"
         shaft = "gear" if "gears.gear_spring" in tie else "pinion"
