@@ -77,18 +77,18 @@ def add_torques(s: Record, tables: Tables, scene: GearScene, begin: float) -> No
         waves.append(np.array(pack_harmonics(harmonics, tau, unit)))
         orders = [(h.amplitude / unit, h.order, h.phase) for h in law.harmonic if h.order is not None]
         torque.constant = law.torque / unit
-        for known in SHAFT_LAWS:
-            for constant in known.coefficients:
+        for of_shaft in SHAFT_LAWS:
+            for constant in of_shaft.coefficients:
                 of_gears = constant.key is not None
                 value = (
                     number_of(scene, shaft, constant.name) if of_gears else getattr(law, constant.name, 0.0)
                 )
                 torque[constant.name] = constant.scaled(value, radius, float(s.length_unit) / tau, force)
-                torque.acts |= int(not known.drives and value != 0.0)
-            if has_law(scene, shaft, known):
-                s.guarded |= int(known.guard is not None)
-                torque.takes_angle |= int(known.by_angle is not None)
-        torque.sampled = sum(1 << k for k, known in enumerate(SAMPLED) if has_law(scene, shaft, known))
+                torque.acts |= int(not of_shaft.drives and value != 0.0)
+            if has_law(scene, shaft, of_shaft):
+                s.guarded |= int(of_shaft.guard is not None)
+                torque.takes_angle |= int(of_shaft.by_angle is not None)
+        torque.sampled = sum(1 << k for k, of_shaft in enumerate(SAMPLED) if has_law(scene, shaft, of_shaft))
         torque.harmonic_count, torque.harmonics_at = len(harmonics), tables.add(waves[-1])
         torque.law_torque, torque.law_speed = unit, float(s.length_unit) / tau / radius
         torque.order_count, torque.orders_at = len(orders), tables.add([x for term in orders for x in term])
