@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import gearidae as gd
-from gearidae.engine import backend, compiling, solve
+from gearidae.engine import solve
 from gearidae.engine.setup import build_contact
 
 LOW = gd.preset("teodorescu2009_low_speed").replace(
