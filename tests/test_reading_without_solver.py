@@ -28,7 +28,7 @@ LIGHT = {
     "signal": "gd.analysis.read_signal(sys.argv[1])",
     "words": "from gearidae.analysis.verdict import outcomes; outcomes(ds)",
     "summary": "from gearidae.archive.run_summary import summary_of; summary_of(ds)",
-    "validity": "from gearidae.runs.kept_validity import validity_of; assert len(validity_of(ds)) == 16",
+    "validity": "from gearidae.runs.kept_validity import validity_of; assert len(validity_of(ds)) == 17",
     "accessor": "ds.gearidae.scene; ds.gearidae.verdicts(); ds.gearidae.to_dataframe(); ds.gearidae.events()",
     "chain": "gd.concat([ds.isel(event=slice(0))], 'time')",
     "checkpoints": "from gearidae.archive import GrowingArchive",

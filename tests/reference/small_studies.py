@@ -74,6 +74,20 @@ def starting_torque(path, scene=LOW, **more):
     return gd.studies.starting_torque(bare, "own", impacts=1, tolerance=1.0, archive=path, **more)
 
 
+def starting_rests(path, scene=LOW, **more):
+    ageing = {
+        "gears.hub_friction": 0.2,
+        "gears.hub_friction_rise": 0.1,
+        "gears.hub_ageing_time": 1e-3,
+        "gears.hub_memory_length": 50e-9,
+        "gears.pinion_hub_radius": 3e-6,
+        "gears.gear_hub_radius": 6e-6,
+        "coating.sam_fraction": 0.45,
+    }
+    options = {"impacts": 1, "tolerance": 1.0, "rest_time": [0.0, 1.0]}
+    return gd.studies.starting_torque(scene.replace(ageing), "own", **options, archive=path, **more)
+
+
 def starting_torques(path, scene=HIGH, **more):
     gears = scene.replace({"contact.roughness": "discrete", "load.torque": 0.0})
     return gd.studies.starting_torque(gears, seeds=2, archive=path, **more)
@@ -97,6 +111,7 @@ STUDIES = {
         posterior,
         pull_off,
         start_probability,
+        starting_rests,
         starting_torque,
         starting_torques,
         sticking_threshold,

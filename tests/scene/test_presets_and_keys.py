@@ -13,6 +13,7 @@ from gearidae.scene import PRESETS, Scene, describe_key, describe_keys, load_cas
 CASES = Path(__file__).parents[2] / "cases"
 CONTRACT = {
     "gears": "density pinion_inertia gear_inertia pinion_base_radius module pinion_teeth gear_teeth pressure_angle "
+    "pinion_spring gear_spring pinion_spring_damping gear_spring_damping pinion_spring_play gear_spring_play "
     "face_width hub_friction hub_friction_rise hub_ageing_time hub_memory_length pinion_hub_radius gear_hub_radius "
     "pinion_hub_adhesion gear_hub_adhesion "
     "pinion_axial_load gear_axial_load pinion_dimple_radius gear_dimple_radius",

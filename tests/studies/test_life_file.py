@@ -1,5 +1,7 @@
 """The life of a coating is read back from its file, and nothing else is taken for one."""
 
+import json
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -22,7 +24,11 @@ def whole():
             "min_gear_speed": LINE,
         },
         coords={"passages": [0.0, 1e6, 2e6], "side": ["interface"]},
-        attrs={"ending": "sticks", "passages_to_sticking": 2.1e6},
+        attrs={
+            "ending": "sticks",
+            "passages_to_sticking": 2.1e6,
+            "scene": json.dumps(gd.preset("teodorescu2009").to_dict()),
+        },
     )
 
 

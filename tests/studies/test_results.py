@@ -30,6 +30,7 @@ def plain(run):
         "date_created",
         "wall_time",
         "end_state",
+        "end_state_name",
     )  # the last is not kept of the runs of a sweep
     kept = run.copy()
     kept.attrs = {name: value for name, value in run.attrs.items() if name not in gone}

@@ -69,10 +69,27 @@ def test_keys_vary_beside_seeds_which_have_no_index():
     assert plain.seed.values.tolist() == a.tolist()
 
 
+def test_errors_of_teeth_are_drawn_anew_for_each_member():
+    teeth = gd.preset("teodorescu2009").replace(
+        {"mesh.pitch_error_rms": 1e-8, "mesh.pitch_error_seed": 2, "run.duration": 10e-6, "run.samples": 11}
+    )
+    ds = gd.studies.ensemble(teeth, {"mesh.pitch_error_seed": "seeds"}, 4)
+    assert ds.pitch_error_seed.values.tolist() == [2, 3, 4, 5]
+    alone = gd.simulate(teeth.replace({"mesh.pitch_error_seed": 4}))
+    assert float(ds.isel(member=2).largest_mesh_force) == float(alone.largest_mesh_force)
+    assert np.unique(ds.largest_mesh_force).size == 4
+    assert "Means over the seeds" in {name for name, _, _ in answer(ds, "ensemble").rows}
+    both = {**SEEDS, "mesh.pitch_error_seed": "seeds"}
+    ds = gd.studies.ensemble(GEARS.replace({"mesh.pitch_error_rms": 1e-8}), both, 2)
+    assert ds.seed.values.tolist() == [5, 6]
+    assert ds.pitch_error_seed.values.tolist() == [0, 1]
+
+
 def test_wrong_seeds_are_named():
     cases = (
         (GEARS, {"contact.seed": "uniform(0, 9)"}, {}, 'must be "seeds"'),
         (gd.preset("teodorescu2009"), SEEDS, {}, 'needs contact.roughness = "discrete"'),
+        (GEARS, {"mesh.pitch_error_seed": "seeds"}, {}, "needs mesh.pitch_error_rms above 0"),
         (GEARS, SEEDS, {"of": "sticks"}, "needs keys beside"),
         (GEARS, {}, {}, "must be a table"),
         (GEARS, {**SEEDS, "drive.torque": "seeds"}, {}, "must be one of normal"),

@@ -9,14 +9,16 @@ import xarray as xr
 
 from gearidae.archive.select import is_roller, scene_of
 
-SEED: Final = "contact.seed"
+SEED_KEYS: Final = ("contact.seed", "mesh.pitch_error_seed")
+"""Keys that number what is drawn: discrete asperities, and errors of single teeth."""
 _MEANS: Final = "gearidae ensemble CASE --vary contact.seed=seeds --size 20 gives means and standard errors"
 
 
 def has_seeds(ds: xr.Dataset) -> bool:
     """Whether the runs of a dataset differ in their seeds."""
     try:
-        return SEED in json.loads(ds.attrs.get("swept", "{}"))
+        swept = json.loads(ds.attrs.get("swept", "{}"))
+        return any(key in swept for key in SEED_KEYS)
     except (TypeError, ValueError):
         return False
 

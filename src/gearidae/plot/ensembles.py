@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 
 from gearidae.analysis.verdict import outcomes
 from gearidae.analysis.verdict.codes import STUCK
-from gearidae.archive.specimen import SEED
+from gearidae.archive.specimen import SEED_KEYS
 from gearidae.arrays import Floats
 from gearidae.drawing.parameter_axis import parameter_axis
 from gearidae.drawing.style import NEGATIVE, POSITIVE, legend_columns, line_width, new_axes, tidy
@@ -51,7 +51,9 @@ def sticking_probability(
         If the dataset is no ensemble, or the key was not drawn.
     """
     names = drawn_keys(ds)
-    over = over or next((key for key in (_COVERAGE, *names) if key in names and key != SEED), SEED)
+    over = over or next(
+        (key for key in (_COVERAGE, *names) if key in names and key not in SEED_KEYS), SEED_KEYS[0]
+    )
     estimate = probability_of(ds, over, bins=bins)
     name = names[over]
     along = parameter_axis(ds[name])
@@ -70,7 +72,9 @@ def sticking_probability(
         linewidth=line_width(1.4),
         label="members that stick",
     )
-    _mark_members(ax, along.places, [outcome.verdict for outcome in outcomes(ds)])
+    # of a sweep over seeds the key has a dimension of its own
+    values = ds[name].broadcast_like(ds["status"]).transpose(*ds["status"].dims).values.ravel()
+    _mark_members(ax, values * along.factor, [outcome.verdict for outcome in outcomes(ds)])
     ax.set_ylim(-0.12, 1.12)
     ax.set_yticks(np.linspace(0.0, 1.0, 6))
     ax.set_xlabel(along.label)

@@ -11,7 +11,7 @@ import xarray as xr
 from gearidae.analysis.verdict import outcomes
 from gearidae.analysis.verdict.codes import sticking, verdict_codes
 from gearidae.archive.dataset import dimension_names
-from gearidae.archive.specimen import SEED, has_seeds
+from gearidae.archive.specimen import SEED_KEYS, has_seeds
 from gearidae.errors import SceneError
 from gearidae.scene.quantity import whole
 from gearidae.studies.shares import check_confidence, wilson
@@ -56,7 +56,7 @@ def sticking_probability(
     """
     check_confidence(confidence)
     ds = _along_members(ds)
-    names = {key: name for key, name in drawn_keys(ds).items() if key != SEED}
+    names = {key: name for key, name in drawn_keys(ds).items() if key not in SEED_KEYS}
     finished = np.isfinite(ds["sticks"].values)
     if "matrix" in ds.coords:
         finished &= ~np.char.startswith(ds["matrix"].values.astype(str), "AB")

@@ -2,20 +2,21 @@ r"""Designs of experiments: points of the unit cube, and values of the keys ther
 
 A plain design draws every member on its own. The design for Sobol' indices (Saltelli et al. 2010,
 doi:10.1016/j.cpc.2009.09.018) draws two independent matrices A and B of N rows, and for each key i a matrix
-:math:`AB_i`, which is A with the column of that key taken from B: N (d + 2) members in all. Seeds of populations are
-numbered from the scene's seed on, and not drawn from a distribution.
+:math:`AB_i`, which is A with the column of that key taken from B: N (d + 2) members in all. Seeds, of populations and
+of errors of teeth, are numbered from the scene's own on, and not drawn from a distribution.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.archive.specimen import SEED
+from gearidae.archive.specimen import SEED_KEYS
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.runs.sweep_plan import MOST_RUNS
@@ -28,9 +29,9 @@ if TYPE_CHECKING:
 
 DESIGNS = ("sobol", "random")
 SEEDS: Final = "seeds"
-"""Text that stands for a distribution of the key."""
+"""Text that stands for a distribution of a key of seeds."""
 NO_INDEX: Final = (
-    "contact.seed has no index, because it is no continuous input: the share of the variance that the keys leave over "
+    "A seed has no index, because it is no continuous input: the share of the variance that the keys leave over "
     "is the scatter between the gears of one design"
 )
 _MOST_DIMENSIONS = 21_201
@@ -147,29 +148,38 @@ def _values(distributions: Sequence[Distribution], points: Floats) -> Floats:
 
 
 def without_seeds(scene: Scene, vary: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return the keys of an ensemble that have distributions: all but the seed, which is numbered.
+    """Return the keys of an ensemble that have distributions: all but seeds, which are numbered.
 
     Raises
     ------
     SceneError
-        If the seed is given a distribution, or the scene has no population.
+        If a seed is given a distribution, or the scene draws nothing by it.
     """
-    if not isinstance(vary, Mapping) or SEED not in vary:
+    if not isinstance(vary, Mapping) or not any(key in vary for key in SEED_KEYS):
         return vary
-    value = vary[SEED]
-    if value != SEEDS:
-        allowed = f'must be "{SEEDS}": the seeds of the members are numbered from the scene\'s own on'
-        raise SceneError(SEED, shorten(value), allowed)
-    if not scene.contact.is_discrete:
-        raise SceneError(SEED, value, 'needs contact.roughness = "discrete": statistical ones draw nothing')
-    return {key: text for key, text in vary.items() if key != SEED}
+    draws_errors = scene.mesh is not None and scene.mesh.pitch_error_rms > 0.0
+    needs = {
+        "contact.seed": (
+            scene.contact.is_discrete,
+            'needs contact.roughness = "discrete": statistical ones draw nothing',
+        ),
+        "mesh.pitch_error_seed": (draws_errors, "needs mesh.pitch_error_rms above 0: nothing is drawn else"),
+    }
+    for key, (is_drawn, allowed) in needs.items():
+        if key in vary and vary[key] != SEEDS:
+            numbered = f'must be "{SEEDS}": the seeds of the members are numbered from the scene\'s own on'
+            raise SceneError(key, shorten(vary[key]), numbered)
+        if key in vary and not is_drawn:
+            raise SceneError(key, vary[key], allowed)
+    return {key: text for key, text in vary.items() if key not in SEED_KEYS}
 
 
-def seed_numbers(scene: Scene, drawn: Design) -> NDArray[np.int64]:
-    """Seeds of the members of a design, shape (members,).
+def seed_numbers(scene: Scene, drawn: Design, vary: Mapping[str, Any]) -> dict[str, NDArray[np.int64]]:
+    """Seeds of the members of a design for each key of seeds that varies, shape (members,).
 
     Rows of the matrices A and B of a design for Sobol' indices have seeds of their own. A row of a matrix AB has the
     seed of the row of A, as it differs from it by one key alone.
     """
     rows = int(drawn.row.max()) + 1
-    return np.asarray(scene.contact.seed + drawn.row + rows * (drawn.matrix == "B"), dtype=np.int64)
+    from_first = np.asarray(drawn.row + rows * (drawn.matrix == "B"), dtype=np.int64)
+    return {key: attrgetter(key)(scene) + from_first for key in SEED_KEYS if key in vary}

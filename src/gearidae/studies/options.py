@@ -11,7 +11,7 @@ Vary = Annotated[
     Option(
         "Key and its distribution, key=normal(450 nm, 50 nm); truncnormal(mean, deviation, lowest, highest), "
         "uniform(lowest, highest), lognormal(median, geometric deviation); contact.seed=seeds numbers the seeds of a "
-        "population; repeatable.",
+        "population, mesh.pitch_error_seed=seeds those of errors of teeth; repeatable.",
         repeatable=True,
         completes="keys",
     ),

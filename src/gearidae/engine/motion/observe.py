@@ -23,6 +23,7 @@ from gearidae.engine.pairs.tooth_pairs import (
     history_of,
     pair_at,
     pair_gap,
+    pairs_along,
 )
 from gearidae.engine.population.forces import asperities_joined
 from gearidae.laws.shafts import driving_force, write_samples
@@ -122,7 +123,7 @@ def _write_joints(m: Model, loads: tuple[float, float, float], t: float, y: Floa
 def separation(m: Model, y: Floats) -> float:
     """Smallest distance of the flanks at a state, deflection included, scaled."""
     if m.scene.nodes == 0:
-        return rigid_separation(m, y[U])
+        return rigid_separation(m, y[U], y[PHASE])
     least = math.inf
     reach = all_pairs(m, y)
     for i in range(reach.total):
@@ -139,6 +140,13 @@ def separation(m: Model, y: Floats) -> float:
 
 
 @compiled
-def rigid_separation(m: Model, u: float) -> float:
-    """Distance of the nearer flank of pairs on the path of contact."""
-    return min(m.scene.nearest[DRIVE] - u, m.scene.nearest[COAST] + u)
+def rigid_separation(m: Model, u: float, phase: float) -> float:
+    """Distance of the nearer flank of pairs on the path of contact; with errors of teeth that of the nearest pair."""
+    if m.scene.pitch_errors == 0:
+        return min(m.scene.nearest[DRIVE] - u, m.scene.nearest[COAST] + u)
+    least = math.inf
+    reach = pairs_along(m, phase)
+    for i in range(reach.total):
+        coast, pair = pair_at(reach, i)
+        least = min(least, pair_gap(m, coast, pair, u, 0.0, phase, 0.0)[0])
+    return least

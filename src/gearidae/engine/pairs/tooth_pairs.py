@@ -60,7 +60,13 @@ def _reach(m: Model, phase: float, drive: bool, coast: bool) -> Reach:
 @compiled(inline=True)
 def all_pairs(m: Model, y: Floats) -> Reach:
     """Pairs within reach along the path of contact, however wide their gaps."""
-    return _reach(m, y[PHASE], True, True)
+    return pairs_along(m, y[PHASE])
+
+
+@compiled(inline=True)
+def pairs_along(m: Model, phase: float) -> Reach:
+    """`all_pairs` of a phase."""
+    return _reach(m, phase, True, True)
 
 
 @compiled(inline=True)

@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 
 from gearidae.archive.keep import read_keep
-from gearidae.archive.specimen import SEED, has_seeds
+from gearidae.archive.specimen import SEED_KEYS, has_seeds
 from gearidae.archive.variables import extreme_names
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
@@ -80,7 +80,8 @@ def ensemble(
         ``normal(mean, standard deviation)``, ``truncnormal(mean, standard deviation, lowest, highest)``,
         ``uniform(lowest, highest)`` or ``lognormal(median, geometric standard deviation)`` with the latter a pure
         number above 1. The keys are independent of each other. ``{"contact.seed": "seeds"}``, alone or beside others,
-        gives each member of a population a surface of its own: its seeds are numbered from the scene's own on.
+        gives each member of a population a surface of its own, ``{"mesh.pitch_error_seed": "seeds"}`` teeth with errors
+        of their own: the seeds are numbered from the scene's own on.
     size : int
         Number of members; with `of` the number N of rows, a power of 2, and the ensemble has N times (keys + 2)
         members.
@@ -129,16 +130,16 @@ def ensemble(
     varied = without_seeds(base, vary)
     seeded = varied is not vary
     if seeded and of is not None and not varied:
-        raise SceneError("of", of, f"needs keys beside {SEED}, which has no index")
+        raise SceneError("of", of, "needs keys beside seeds, which have no index")
     distributions = read_distributions(base, varied) if varied or not seeded else ()
     drawn = (plain_design if of is None else pick_freeze_design)(distributions, int(size), design, int(seed))
     texts = names_of(distributions)
     values: dict[str, Any] = {
         distribution.key: drawn.values[:, number] for number, distribution in enumerate(distributions)
     }
-    if seeded:
-        values[SEED] = seed_numbers(base, drawn)
-    words = {**texts, **({SEED: SEEDS} if seeded else {})}
+    seeds = seed_numbers(base, drawn, vary)
+    values |= seeds
+    words = {**texts, **dict.fromkeys(seeds, SEEDS)}
     plan = member_plan(base, values, words)
     about = {"design": design, "seed": int(seed), "size": int(size), "of": of, "distributions": words}
 
@@ -192,7 +193,7 @@ def _with_design(
 
 def _titles(scene: Scene, texts: Mapping[str, str], members: int) -> dict[str, str]:
     drawn = ", ".join(
-        f"{key} numbered" if key == SEED else f"{key} from {text}" for key, text in texts.items()
+        f"{key} numbered" if key in SEED_KEYS else f"{key} from {text}" for key, text in texts.items()
     )
     return {
         "title": f"{scene.name}: ensemble of {members} runs",
@@ -221,7 +222,7 @@ def _call(
 ) -> Call:
     keys = read_texts(vary, "--vary", VARY_EXAMPLE)
     check_design(size, design, seed, indices=of is not None)
-    drawn_keys = [key for key in keys if key != SEED]
+    drawn_keys = [key for key in keys if key not in SEED_KEYS]
     runs = size if of is None else size * (len(drawn_keys) + 2)  # the matrices of the Sobol' indices
     return Call(
         (keys, size),
@@ -299,7 +300,7 @@ def _mean_rows(ds: xr.Dataset) -> Rows:
     if "index_comment" in ds.attrs:
         left = 1.0 - float(ds["first_order"].sum())
         yield (
-            SEED,
+            ", ".join(key for key in json.loads(ds.attrs["swept"]) if key in SEED_KEYS),
             "no index",
             f"{left:.3f} is no first order of a key: scatter between seeds, and interactions",
         )

@@ -14,7 +14,6 @@ import xarray as xr
 
 from gearidae.archive.keep import read_keep
 from gearidae.archive.provenance import provenance
-from gearidae.archive.specimen import SEED
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.runs.execution import RunOptions, prepared
@@ -65,7 +64,8 @@ def start_probability(
     scene : Scene
         With gears.
     vary : mapping of str to object
-        Keys and their distributions, as for `ensemble`; ``{"contact.seed": "seeds"}`` numbers seeds of populations.
+        Keys and their distributions, as for `ensemble`; ``{"contact.seed": "seeds"}`` numbers seeds of populations,
+        ``{"mesh.pitch_error_seed": "seeds"}`` those of errors of teeth.
     size : int, optional
         Number of members.
     by : sequence, optional
@@ -116,8 +116,8 @@ def start_probability(
         distribution.key: drawn.values[:, number] for number, distribution in enumerate(distributions)
     }
     words = names_of(distributions)
-    if seeded:
-        values[SEED], words[SEED] = seed_numbers(base, drawn), SEEDS
+    seeds = seed_numbers(base, drawn, vary)
+    values, words = values | seeds, words | dict.fromkeys(seeds, SEEDS)
     plan, keep = member_plan(base, values, words), read_keep(("reached",), base)
 
     def work(kept: RunCache | None) -> xr.Dataset:

@@ -108,12 +108,18 @@ def _follow_separation(m: Model, last: Record, now: Record, y: Floats) -> None:
 
     Elastic contacts turn round at events, which are accepted times.
     """
-    if m.scene.nodes > 0:
+    if (
+        m.scene.nodes > 0 or m.scene.pitch_errors != 0
+    ):  # a tooth that stands out comes near as it enters the path
         _note_separation(m, separation(m, y))
-    elif now.travel_rate * last.travel_rate <= 0.0 and now.travel_rate != last.travel_rate:
+    if (
+        m.scene.nodes == 0
+        and now.travel_rate * last.travel_rate <= 0.0
+        and now.travel_rate != last.travel_rate
+    ):
         h = now.time - last.time
         extreme = extreme_gap(h, last.travel, last.travel_rate, now.travel, now.travel_rate)
-        _note_separation(m, rigid_separation(m, extreme))
+        _note_separation(m, rigid_separation(m, extreme, y[PHASE]))
 
 
 @compiled
