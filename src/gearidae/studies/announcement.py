@@ -59,11 +59,9 @@ def draw_words(scene: Scene, keys: Mapping[str, str], runs: int, workers: int | 
     SceneError
         If a key or a distribution is not allowed.
     """
-    from gearidae.studies.design import without_seeds
-    from gearidae.studies.distributions import read_distributions
+    from gearidae.studies.design import drawn_distributions
 
-    varied = without_seeds(scene, keys)
-    drawn = read_distributions(scene, varied) if varied or varied is keys else ()
+    drawn = drawn_distributions(scene, keys)
     quantiles = (np.arange(_TRIED) + 0.5) / _TRIED
     columns = {distribution.key: distribution.quantiles(quantiles).tolist() for distribution in drawn}
     scenes = [

@@ -22,7 +22,7 @@ from gearidae.errors import SceneError
 from gearidae.runs.sweep_plan import MOST_RUNS
 from gearidae.scene.group import shorten
 from gearidae.scene.quantity import whole
-from gearidae.studies.distributions import Distribution
+from gearidae.studies.distributions import Distribution, read_distributions
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -147,16 +147,17 @@ def _values(distributions: Sequence[Distribution], points: Floats) -> Floats:
     return np.stack(columns, axis=1) if columns else points
 
 
-def without_seeds(scene: Scene, vary: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return the keys of an ensemble that have distributions: all but seeds, which are numbered.
+def drawn_distributions(scene: Scene, vary: Mapping[str, Any]) -> tuple[Distribution, ...]:
+    """Read the distributions of the keys of an ensemble: of all but seeds, which are numbered.
 
     Raises
     ------
     SceneError
-        If a seed is given a distribution, or the scene draws nothing by it.
+        If a key is none of a number, what is given is no distribution, a seed is given one, or the scene draws nothing
+        by a seed.
     """
     if not isinstance(vary, Mapping) or not any(key in vary for key in SEED_KEYS):
-        return vary
+        return read_distributions(scene, vary)
     draws_errors = scene.mesh is not None and scene.mesh.pitch_error_rms > 0.0
     needs = {
         "contact.seed": (
@@ -171,7 +172,8 @@ def without_seeds(scene: Scene, vary: Mapping[str, Any]) -> Mapping[str, Any]:
             raise SceneError(key, shorten(vary[key]), numbered)
         if key in vary and not is_drawn:
             raise SceneError(key, vary[key], allowed)
-    return {key: text for key, text in vary.items() if key not in SEED_KEYS}
+    others = {key: text for key, text in vary.items() if key not in SEED_KEYS}
+    return read_distributions(scene, others) if others else ()
 
 
 def seed_numbers(scene: Scene, drawn: Design, vary: Mapping[str, Any]) -> dict[str, NDArray[np.int64]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -13,11 +14,12 @@ from numpy.typing import NDArray
 from gearidae.analysis.verdict.codes import CODE_ATTRIBUTES, sticking, verdict_codes
 from gearidae.errors import SceneError
 from gearidae.runs.sweep_plan import SweepPlan
+from gearidae.studies.design import SEEDS, Design, drawn_distributions, seed_numbers
+from gearidae.studies.distributions import Distribution
 from gearidae.studies.study import Rows
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
-    from gearidae.studies.distributions import Distribution
 
 Made = TypeVar("Made")
 
@@ -26,6 +28,60 @@ STICKS = {
     "units": "1",
     "comment": "1 of the verdicts sticks and runs back, 0 of the others, NaN if unfinished",
 }
+
+
+@dataclass(frozen=True, slots=True)
+class Members:
+    """The members of an ensemble, drawn and not yet run.
+
+    Attributes
+    ----------
+    plan : SweepPlan
+        Their scenes.
+    design : Design
+    keys : tuple of str
+        Those that have distributions.
+    words : dict of str to str
+        What each key is drawn from, seeds last.
+    """
+
+    plan: SweepPlan
+    design: Design
+    keys: tuple[str, ...]
+    words: dict[str, str]
+
+    @property
+    def have_seeds(self) -> bool:
+        """Whether the members differ in their seeds."""
+        return len(self.words) > len(self.keys)
+
+
+def draw_members(
+    base: Scene, vary: Mapping[str, Any], draw: Callable[[Sequence[Distribution]], Design]
+) -> Members:
+    """Draw the keys of all members from their distributions, number their seeds, and make their scenes.
+
+    Parameters
+    ----------
+    base : Scene
+        What the runs have in common.
+    vary : mapping of str to object
+        Keys and their distributions, as for `gearidae.studies.ensemble`.
+    draw : callable
+        Makes a design of distributions; of none where seeds alone vary.
+
+    Raises
+    ------
+    SceneError
+        If a key or a distribution is not allowed, or a value that was drawn.
+    """
+    distributions = drawn_distributions(base, vary)
+    design = draw(distributions)
+    seeds = seed_numbers(base, design, vary)
+    texts = names_of(distributions)
+    words = texts | dict.fromkeys(seeds, SEEDS)
+    values: dict[str, NDArray[Any]] = {**dict(zip(texts, design.values.T, strict=True)), **seeds}
+    return Members(member_plan(base, values, words), design, tuple(texts), words)
 
 
 def member_plan(base: Scene, values: Mapping[str, NDArray[Any]], drawn_from: Mapping[str, str]) -> SweepPlan:

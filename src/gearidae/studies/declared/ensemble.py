@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import logging
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, Final, Unpack
 
 import numpy as np
@@ -26,25 +26,16 @@ from gearidae.scene.pairs import texts as read_texts
 from gearidae.scene.prefixes import with_prefix
 from gearidae.studies._sticking_probability import sticking_probability
 from gearidae.studies.announcement import draw_words
-from gearidae.studies.design import (
-    NO_INDEX,
-    SEEDS,
-    Design,
-    check_design,
-    pick_freeze_design,
-    plain_design,
-    seed_numbers,
-    without_seeds,
-)
-from gearidae.studies.distributions import read_distributions
+from gearidae.studies.design import NO_INDEX, Design, check_design, pick_freeze_design, plain_design
 from gearidae.studies.indices import FEWEST, indices_of
-from gearidae.studies.members import along_members, count_rows, member_plan, names_of
+from gearidae.studies.members import along_members, count_rows, draw_members
 from gearidae.studies.options import VARY_EXAMPLE, Seed, Vary
 from gearidae.studies.options import Design as DesignOption
 from gearidae.studies.study import Call, Column, Option, Picture, Rows, Study
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
+    from gearidae.studies.distributions import Distribution
 
 log = logging.getLogger(__name__)
 
@@ -127,30 +118,26 @@ def ensemble(
     base, execution = prepared(scene, options, samples="off")
     check_design(size, design, seed, indices=of is not None)
     _check_figure(base, of)
-    varied = without_seeds(base, vary)
-    seeded = varied is not vary
-    if seeded and of is not None and not varied:
-        raise SceneError("of", of, "needs keys beside seeds, which have no index")
-    distributions = read_distributions(base, varied) if varied or not seeded else ()
-    drawn = (plain_design if of is None else pick_freeze_design)(distributions, int(size), design, int(seed))
-    texts = names_of(distributions)
-    values: dict[str, Any] = {
-        distribution.key: drawn.values[:, number] for number, distribution in enumerate(distributions)
-    }
-    seeds = seed_numbers(base, drawn, vary)
-    values |= seeds
-    words = {**texts, **dict.fromkeys(seeds, SEEDS)}
-    plan = member_plan(base, values, words)
+
+    def draw(distributions: Sequence[Distribution]) -> Design:
+        if of is None:
+            return plain_design(distributions, int(size), design, int(seed))
+        if not distributions:
+            raise SceneError("of", of, "needs keys beside seeds, which have no index")
+        return pick_freeze_design(distributions, int(size), design, int(seed))
+
+    drawn = draw_members(base, vary, draw)
+    words = drawn.words
     about = {"design": design, "seed": int(seed), "size": int(size), "of": of, "distributions": words}
 
     def finish(ds: xr.Dataset) -> xr.Dataset:
-        ds = _with_design(along_members(ds, tuple(words)), drawn, tuple(texts), of, int(seed))
-        if seeded and of is not None:
+        ds = _with_design(along_members(ds, tuple(words)), drawn.design, drawn.keys, of, int(seed))
+        if drawn.have_seeds and of is not None:
             ds = ds.assign_attrs(index_comment=NO_INDEX)
-        return ds.assign_attrs(_titles(base, words, len(plan.scenes)))
+        return ds.assign_attrs(_titles(base, words, len(drawn.plan.scenes)))
 
-    keep = read_keep(("extremes", "energy_balance") if seeded else ("extremes",), base)
-    return run_study(plan, execution, {"ensemble": json.dumps(about)}, finish, keep=keep)
+    keep = read_keep(("extremes", "energy_balance") if drawn.have_seeds else ("extremes",), base)
+    return run_study(drawn.plan, execution, {"ensemble": json.dumps(about)}, finish, keep=keep)
 
 
 def figure_names(scene: Scene) -> tuple[str, ...]:

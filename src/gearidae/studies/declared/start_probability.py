@@ -23,9 +23,8 @@ from gearidae.scene.pairs import quantity
 from gearidae.scene.pairs import texts as read_texts
 from gearidae.scene.prefixes import with_prefix
 from gearidae.studies.announcement import draw_words
-from gearidae.studies.design import SEEDS, check_design, plain_design, seed_numbers, without_seeds
-from gearidae.studies.distributions import read_distributions
-from gearidae.studies.members import along_members, member_plan, names_of
+from gearidae.studies.design import check_design, plain_design
+from gearidae.studies.members import along_members, draw_members
 from gearidae.studies.options import VARY_EXAMPLE, Seed, Vary
 from gearidae.studies.options import Design as DesignOption
 from gearidae.studies.shares import check_confidence, wilson
@@ -108,17 +107,8 @@ def start_probability(
     check_design(size, design, seed, indices=False)
     times = _times(base, by)
     base = _followed(base, times)
-    varied = without_seeds(base, vary)
-    seeded = varied is not vary
-    distributions = read_distributions(base, varied) if varied or not seeded else ()
-    drawn = plain_design(distributions, int(size), design, int(seed))
-    values: dict[str, Any] = {
-        distribution.key: drawn.values[:, number] for number, distribution in enumerate(distributions)
-    }
-    words = names_of(distributions)
-    seeds = seed_numbers(base, drawn, vary)
-    values, words = values | seeds, words | dict.fromkeys(seeds, SEEDS)
-    plan, keep = member_plan(base, values, words), read_keep(("reached",), base)
+    drawn = draw_members(base, vary, lambda of: plain_design(of, int(size), design, int(seed)))
+    plan, words, keep = drawn.plan, drawn.words, read_keep(("reached",), base)
 
     def work(kept: RunCache | None) -> xr.Dataset:
         runs = along_members(run_plan(plan, execution, kept, keep), tuple(words))
