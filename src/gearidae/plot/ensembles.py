@@ -9,7 +9,6 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from gearidae.analysis.verdict import outcomes
 from gearidae.analysis.verdict.codes import STUCK
 from gearidae.archive.specimen import SEED_KEYS
 from gearidae.arrays import Floats
@@ -17,7 +16,7 @@ from gearidae.drawing.parameter_axis import parameter_axis
 from gearidae.drawing.style import NEGATIVE, POSITIVE, legend_columns, line_width, new_axes, tidy
 from gearidae.errors import SceneError
 from gearidae.plot.outcome import look_of
-from gearidae.studies._sticking_probability import drawn_keys
+from gearidae.studies._sticking_probability import as_ensemble, drawn_keys
 from gearidae.studies._sticking_probability import sticking_probability as probability_of
 
 _COVERAGE = "coating.sam_fraction"
@@ -31,7 +30,7 @@ def sticking_probability(
     Parameters
     ----------
     ds : xarray.Dataset
-        From `gearidae.studies.ensemble`.
+        From `gearidae.studies.ensemble`, or a sweep over seeds and other keys.
     ax : matplotlib Axes, optional
         Where to draw; by default in a figure of its own.
     over : str, optional
@@ -50,6 +49,7 @@ def sticking_probability(
     SceneError
         If the dataset is no ensemble, or the key was not drawn.
     """
+    ds = as_ensemble(ds)
     names = drawn_keys(ds)
     over = over or next(
         (key for key in (_COVERAGE, *names) if key in names and key not in SEED_KEYS), SEED_KEYS[0]
@@ -72,9 +72,7 @@ def sticking_probability(
         linewidth=line_width(1.4),
         label="members that stick",
     )
-    # of a sweep over seeds the key has a dimension of its own
-    values = ds[name].broadcast_like(ds["status"]).transpose(*ds["status"].dims).values.ravel()
-    _mark_members(ax, values * along.factor, [outcome.verdict for outcome in outcomes(ds)])
+    _mark_members(ax, along.places, ds["verdict"].values.tolist())
     ax.set_ylim(-0.12, 1.12)
     ax.set_yticks(np.linspace(0.0, 1.0, 6))
     ax.set_xlabel(along.label)

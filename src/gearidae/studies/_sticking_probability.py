@@ -55,7 +55,7 @@ def sticking_probability(
         If the dataset is no ensemble, the key was not drawn, or too few members are finished.
     """
     check_confidence(confidence)
-    ds = _along_members(ds)
+    ds = as_ensemble(ds)
     names = {key: name for key, name in drawn_keys(ds).items() if key not in SEED_KEYS}
     finished = np.isfinite(ds["sticks"].values)
     if "matrix" in ds.coords:
@@ -104,15 +104,16 @@ def drawn_keys(ds: xr.Dataset) -> dict[str, str]:
     return dimension_names(json.loads(ds.attrs["swept"]))
 
 
-def _along_members(ds: xr.Dataset) -> xr.Dataset:
-    """Return an ensemble as it is, and a sweep over seeds as an ensemble: its runs along ``member``."""
+def as_ensemble(ds: xr.Dataset) -> xr.Dataset:
+    """Return a sweep over seeds as an ensemble, its runs with their verdicts along ``member``; others as they are."""
     if not _is_sweep_over_seeds(ds):
         return ds
     dims = ds["status"].dims
     stacked = ds[["status"]].stack(member=dims).reset_index("member")
     words = [outcome.verdict for outcome in outcomes(ds)]
     codes = verdict_codes(words)
-    return stacked.assign(sticks=("member", sticking(codes))).assign_attrs(ensemble="sweep")
+    judged = {"verdict": ("member", words), "sticks": ("member", sticking(codes))}
+    return stacked.assign(judged).assign_attrs(ensemble="sweep")
 
 
 def _is_sweep_over_seeds(ds: xr.Dataset) -> bool:
