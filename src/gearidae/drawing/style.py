@@ -7,7 +7,7 @@ display.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -254,6 +254,16 @@ def tidy(ax: Axes) -> None:
     ax.grid(visible=True, color="0.9", linewidth=0.6)
     ax.set_axisbelow(True)
     ax.margins(x=0)
+
+
+def zero_line(ax: Axes) -> None:
+    """Draw a line at zero, behind what is drawn."""
+    ax.axhline(0.0, color="0.3", linewidth=line_width(0.8), zorder=1)
+
+
+def mark_value(line: Callable[..., Any], value: float, words: str) -> None:
+    """Mark a value with a dotted line and name it in the legend, by `Axes.axhline` or `Axes.axvline`."""
+    line(value, color="0.3", linewidth=line_width(0.8), linestyle=":", label=words)
 
 
 def label_axis(axis: Axis, words: str, unit: str, *, minor: bool = False) -> None:

@@ -9,7 +9,17 @@ from matplotlib.axes import Axes
 from gearidae.archive.select import run_scene, swept_dims
 from gearidae.archive.select import runs as single_runs
 from gearidae.arrays import Floats
-from gearidae.drawing.style import NEGATIVE, POSITIVE, largest, line_width, new_axes, runs_of, scale_for, tidy
+from gearidae.drawing.style import (
+    NEGATIVE,
+    POSITIVE,
+    largest,
+    line_width,
+    new_axes,
+    runs_of,
+    scale_for,
+    tidy,
+    zero_line,
+)
 from gearidae.errors import SceneError
 from gearidae.records import EventKind, Flank
 
@@ -56,7 +66,7 @@ def asperity_events(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     ax = new_axes(ax, height=3.6)
     across, up = scale_for(end, "s"), scale_for(largest([drawn], name), "N")
     ax.plot(time[here] * across.factor, force[here] * up.factor, color="0.45", linewidth=line_width(0.9))
-    ax.axhline(0.0, color="0.3", linewidth=line_width(0.8), zorder=1)
+    zero_line(ax)
     for kind, mark, colour, words in (
         (EventKind.ASPERITY_ONSET, "^", POSITIVE, "joins"),
         (EventKind.ASPERITY_DETACHMENT, "v", NEGATIVE, "detaches"),

@@ -13,7 +13,7 @@ from gearidae.analysis.verdict.codes import STUCK
 from gearidae.archive.specimen import SEED_KEYS
 from gearidae.arrays import Floats
 from gearidae.drawing.parameter_axis import parameter_axis
-from gearidae.drawing.style import NEGATIVE, POSITIVE, legend_columns, line_width, new_axes, tidy
+from gearidae.drawing.style import NEGATIVE, POSITIVE, legend_columns, line_width, mark_value, new_axes, tidy
 from gearidae.errors import SceneError
 from gearidae.plot.outcome import look_of
 from gearidae.studies._sticking_probability import as_ensemble, drawn_keys
@@ -146,7 +146,7 @@ def specimens(ds: xr.Dataset, ax: Axes | None = None, *, of: str | None = None) 
         label="one gear each",
     )
     mean = float(values.mean())
-    ax.axvline(mean, color="0.3", linewidth=line_width(0.8), linestyle=":", label="mean")
+    mark_value(ax.axvline, mean, "mean")
     if values.size > 1:
         error = float(values.std(ddof=1)) / np.sqrt(values.size)
         ax.axvspan(mean - error, mean + error, color="0.3", alpha=0.2, linewidth=0, label="standard error")

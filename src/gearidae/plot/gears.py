@@ -19,6 +19,7 @@ from gearidae.drawing.style import (
     runs_of,
     scale_for,
     tidy,
+    zero_line,
 )
 from gearidae.plot.outcome import look_of
 
@@ -52,7 +53,7 @@ def gear_speed(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     ax.set_ylabel("gear speed (rad/s)")
     low, high = ax.get_ylim()
     if low < 0.0 < high:
-        ax.axhline(0.0, color="0.3", linewidth=line_width(0.8), zorder=1)
+        zero_line(ax)
     return ax
 
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from gearidae.analysis.verdict import GearOutcome, RollerOutcome, outcomes
 from gearidae.archive.select import swept_dims
 from gearidae.drawing.parameter_axis import ParameterAxis, cell_edges, parameter_axis, scale_axis
-from gearidae.drawing.style import legend_columns, line_width, new_axes, scale_for, scaled, tidy
+from gearidae.drawing.style import legend_columns, line_width, new_axes, scale_for, scaled, tidy, zero_line
 from gearidae.errors import SceneError
 
 
@@ -115,7 +115,7 @@ def _bars(ax: Axes, along: ParameterAxis, judged: Sequence[GearOutcome | RollerO
         if judged[left].verdict != judged[right].verdict:
             middle = 0.5 * (along.places[left] + along.places[right])
             ax.axvline(middle, color="0.3", linestyle=":", linewidth=line_width(1.0), zorder=1)
-    ax.axhline(0.0, color="0.3", linewidth=line_width(0.8), zorder=1)
+    zero_line(ax)
     tidy(ax)
     ax.margins(x=0.03)
     ax.set_xlabel(along.label)

@@ -5,7 +5,17 @@ from __future__ import annotations
 import xarray as xr
 from matplotlib.axes import Axes
 
-from gearidae.drawing.style import label_time, largest, legend, line_width, new_axes, runs_of, scale_for, tidy
+from gearidae.drawing.style import (
+    label_time,
+    largest,
+    legend,
+    line_width,
+    new_axes,
+    runs_of,
+    scale_for,
+    tidy,
+    zero_line,
+)
 
 
 def roller_force(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
@@ -74,6 +84,6 @@ def _draw(ds: xr.Dataset, ax: Axes | None, name: str, unit: str, words: str) -> 
         )
     tidy(ax)
     legend(ax, runs)
-    ax.axhline(0.0, color="0.3", linewidth=line_width(0.8), zorder=1)
+    zero_line(ax)
     ax.set_ylabel(f"{words} ({scale.unit})")
     return ax

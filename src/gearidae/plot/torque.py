@@ -22,6 +22,7 @@ from gearidae.drawing.style import (
     runs_of,
     scale_for,
     tidy,
+    zero_line,
 )
 
 _TORQUE = "gear_contact_torque"
@@ -73,7 +74,7 @@ def _curve(ax: Axes, run: Run, low: float, high: float, scale: Scale) -> None:
     margin = 0.06 * (high - low) or 0.06 * abs(high) or 1.0 / scale.factor
     ax.set_ylim((low - margin) * scale.factor, (high + margin) * scale.factor)
     if low < 0.0 < high:
-        ax.axhline(0.0, color="0.3", linewidth=line_width(0.8), zorder=1)
+        zero_line(ax)
     ax.set_ylabel(f"contact torque\non the gear ({scale.unit})")
 
 

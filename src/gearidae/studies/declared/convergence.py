@@ -332,7 +332,7 @@ def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     SceneError
         If the dataset is something else.
     """
-    from gearidae.drawing.style import line_colour, line_width, new_axes, tidy
+    from gearidae.drawing.style import line_colour, line_width, mark_value, new_axes, tidy
 
     STUDY.require(ds)
     ax = new_axes(ax, height=3.8)
@@ -348,13 +348,7 @@ def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
             linewidth=line_width(1.2),
             label=f"{name}: {figure['verdict'].item()}",
         )
-    ax.axhline(
-        100.0 * float(ds.attrs["target"]),
-        color="0.3",
-        linewidth=line_width(0.8),
-        linestyle=":",
-        label="target",
-    )
+    mark_value(ax.axhline, 100.0 * float(ds.attrs["target"]), "target")
     ax.set_xscale("log")
     ax.set_yscale("log")
     ax.set_xlabel("time of a run (s)")

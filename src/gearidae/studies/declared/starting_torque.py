@@ -27,7 +27,8 @@ SEEDS: Final = 20
 """Gears of a population by default."""
 SLOW_ENOUGH: Final = 0.1
 """Change of the median by half the rate below which a rate is slow enough."""
-_TORQUE_WORDS = "starting torque on the pinion"
+_TORQUE_WORDS: Final = "starting torque on the pinion"
+_OWN: Final = "the drive's own"
 _FRACTION: Final = "coating.sam_fraction"
 _REST: Final = "initial.rest_time"
 _ALONG: Final = ("sam_fraction",)
@@ -286,7 +287,7 @@ def picture_of_rests(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
 
 def _torques_over(ds: xr.Dataset, places: Floats, ax: Axes | None) -> Axes:
     """Draw both torques over some places, and the drive's own."""
-    from gearidae.drawing.style import line_colour, line_style, line_width, new_axes, tidy
+    from gearidae.drawing.style import line_colour, line_style, line_width, mark_value, new_axes, tidy
 
     ax = new_axes(ax, height=3.8)
     drawn = False
@@ -312,13 +313,7 @@ def _torques_over(ds: xr.Dataset, places: Floats, ax: Axes | None) -> Axes:
         )
     tidy(ax)
     if ds.attrs.get("drive_torque", 0.0) > 0.0:
-        ax.axhline(
-            ds.attrs["drive_torque"],
-            color="0.3",
-            linewidth=line_width(0.8),
-            linestyle=":",
-            label="the drive's own",
-        )
+        mark_value(ax.axhline, ds.attrs["drive_torque"], _OWN)
     ax.legend(frameon=False, fontsize="small")
     return ax
 
@@ -345,7 +340,15 @@ def picture_of_gears(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     """
     from matplotlib.ticker import LogLocator, NullFormatter
 
-    from gearidae.drawing.style import label_axis, line_colour, line_style, line_width, new_axes, tidy
+    from gearidae.drawing.style import (
+        label_axis,
+        line_colour,
+        line_style,
+        line_width,
+        mark_value,
+        new_axes,
+        tidy,
+    )
 
     GEARS.require(ds)
     if not np.isfinite(ds["starting_torque"]).any():
@@ -373,13 +376,7 @@ def picture_of_gears(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     ax.set_ylabel(f"share of {count} gears")
     tidy(ax)
     if ds.attrs.get("drive_torque", 0.0) > 0.0:
-        ax.axvline(
-            ds.attrs["drive_torque"],
-            color="0.3",
-            linewidth=line_width(0.8),
-            linestyle=":",
-            label="the drive's own",
-        )
+        mark_value(ax.axvline, ds.attrs["drive_torque"], _OWN)
     ax.legend(frameon=False, fontsize="small")
     return ax
 
