@@ -9,7 +9,7 @@ import matplotlib as mpl
 from matplotlib.figure import Figure
 
 import gearidae as gd
-from gearidae.archive.select import swept_dims
+from gearidae.archive.select import scene_of, single_run, swept_dims
 from gearidae.cli.case import default_output, selected
 from gearidae.cli.codes import DONE
 from gearidae.cli.output import print_line
@@ -139,10 +139,7 @@ def _inches(text: str) -> tuple[float, float]:
     parts = [part.strip() for part in text.split(",")]
     if len(parts) != 2:
         raise SceneError("--size", text, "must be a width and a height, such as 3.4 in, 2.4 in")
-    lengths = [
-        _INCH * quantity("--size", part[:-2], "1") if part.endswith("in") else quantity("--size", part, "m")
-        for part in parts
-    ]
+    lengths = [quantity("--size", part, "m") for part in parts]
     if not all(0.5 * _INCH <= length <= 50.0 * _INCH for length in lengths):
         raise SceneError("--size", text, "must lie in 0.5..50 inches (in, mm, cm)")
     return lengths[0] / _INCH, lengths[1] / _INCH
@@ -180,11 +177,9 @@ def report_archive(
     SceneError
         If the archive cannot be read, has no such runs, or the page cannot be written.
     """
-    from gearidae.archive.select import scene_of, single_run
     from gearidae.report import write_report
     from gearidae.runs.kept_validity import with_validity
     from gearidae.scene.validity_row import ATTRIBUTE
-    from gearidae.studies.products import open_product
 
     ds, kind = open_product(archive)
     if select and kind != "runs":

@@ -19,6 +19,7 @@ from gearidae.analysis.verdict import START_UP
 from gearidae.archive.pieces import pieces, reached
 from gearidae.archive.select import runs, scene_of
 from gearidae.arrays import Floats
+from gearidae.drawing.density import DECADES, draw_density, is_apart, legend_on_density, line_on_density
 from gearidae.drawing.style import (
     Run,
     characters,
@@ -34,8 +35,6 @@ from gearidae.drawing.style import (
 from gearidae.errors import SceneError
 from gearidae.scene.prefixes import with_prefix
 
-_DECADES = 6
-"""Spectra are shown down to this many decades below their largest value."""
 _SETTLED = 0.2
 """Part of a run left out of its spectrum, because it has not settled."""
 _MOST_DECADES = 14
@@ -44,8 +43,6 @@ _ONE_SPEED = 0.1
 """Range of the mean speeds of a record's quarters, over its mean, up to which its mesh has one frequency."""
 _FEWEST_BANDS = 32
 """Of frequency, that a spectrogram shows."""
-_APART = 0.02
-"""Part of a spectrogram's height below which a line is not told from zero."""
 _PADDING = 8
 _STANDS = 0.01
 """Speed over the largest of a record below which a gear stands: what is left of the ring after it has stuck."""
@@ -265,32 +262,16 @@ def spectrogram(ds: xr.Dataset, ax: Axes | None = None, *, highest: float | None
     density = density.sel(frequency=slice(0.0, highest))
     ax = new_axes(ax, height=3.6)
     scale = scale_for(float(run["time"][-1]), "s")
-    level = 10.0 * np.log10(np.maximum(density.values, np.nanmax(density.values) * 10.0**-_DECADES))
-    colours = ax.pcolormesh(
-        density["time"] * scale.factor,
-        density["frequency"],
-        level,
-        shading="nearest",
-        cmap="viridis",
-        rasterized=True,
-    )
-    bar = ax.figure.colorbar(colours, ax=ax, pad=0.02)
-    bar.set_label("dB re 1 (rad/s)²/Hz")
+    across = density["time"].values * scale.factor
+    draw_density(ax, across, density["frequency"].values, density.values, "(rad/s)²/Hz")
     shown = float(density["frequency"][-1])
     lines = {"mesh": mesh, "pinion": mesh / int(gears["pinion_teeth"]), "gear": turns}
     for (name, line), style in zip(lines.items(), ("-", "--", ":"), strict=True):
-        if np.nanmax(line) > _APART * shown:
-            ax.plot(
-                density["time"] * scale.factor,
-                line,
-                style,
-                color="white",
-                linewidth=line_width(0.8),
-                label=name,
-            )
+        if is_apart(line, shown):
+            line_on_density(ax, across, line, name, style)
     ax.set_ylim(0.0, shown)
     if ax.get_lines():
-        ax.legend(loc="upper left", fontsize="small", labelcolor="white", facecolor="0.2")
+        legend_on_density(ax, "small")
     label_axis(ax.yaxis, "frequency", "Hz")
     ax.set_xlabel(f"time ({scale.unit})")
     _note_aliases(ax, str(found.attrs.get("note", "")))
@@ -461,7 +442,7 @@ def _fit_heights(ax: Axes, wide: bool) -> None:
         inside.append(power[(at >= low) & (at <= high) & (power > 0.0)])
     values = np.concatenate([*inside, np.ones(1)] if not any(map(len, inside)) else inside)
     top = float(values.max())
-    bottom = max(float(values.min()), top * 10.0**-_MOST_DECADES) if wide else top * 10.0**-_DECADES
+    bottom = max(float(values.min()), top * 10.0**-_MOST_DECADES) if wide else top * 10.0**-DECADES
     ax.set_ylim(0.5 * bottom if wide else bottom, 3.0 * top)
 
 

@@ -7,6 +7,9 @@ from collections.abc import Sequence
 from decimal import Decimal, DecimalException
 from typing import Any
 
+import numpy as np
+
+from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.scene.literal import literal
 from gearidae.scene.units import from_text
@@ -109,6 +112,12 @@ def quantity(option: str, text: str | float, unit: str) -> float:
         return from_text(str(text), unit)
     except ValueError as error:
         raise SceneError(option, text, str(error)) from None
+
+
+def quantities(option: str, values: object, unit: str) -> Floats:
+    """Read one quantity or several, each as for `quantity`, into an array."""
+    several: Any = [values] if isinstance(values, int | float | str) else values
+    return np.array([quantity(option, value, unit) for value in several], dtype=np.float64)
 
 
 def _split(pair: str, option: str, example: str) -> tuple[str, str]:

@@ -250,20 +250,18 @@ def _dataset(
         "parts": np.array([parts_of(search.scene, search.static) for search in searches]),
         "message": np.array([search.failure for search in searches]),
     }
-    key, against = "coating.sam_fraction", "SAM fraction"
     if study is RESTS:
-        key, against = "initial.rest_time", "time at rest"
-        values["rest_time"] = np.array(points)
+        key, against, about = "initial.rest_time", "time at rest", RESTS.columns["rest_time"].attributes()
+    else:
+        key, against, about = "coating.sam_fraction", "SAM fraction", SAM_FRACTION.attributes
+    dim = key.rpartition(".")[2]
     attributes = {
         **provenance(scene, "searched the starting torque", swept=(key,)),
         "title": f"{scene.name}: starting torque",
         "summary": f"Smallest drive torque that keeps the gear turning against adhesion, against {against}.",
         "drive_torque": scene.drive.torque,
     }
-    ds = study.dataset(values, attributes)
-    if study is RESTS:
-        return ds
-    return ds.assign_coords(sam_fraction=("sam_fraction", np.array(points), SAM_FRACTION.attributes))
+    return study.dataset(values, attributes).assign_coords({dim: (dim, np.array(points), about)})
 
 
 @dataclass

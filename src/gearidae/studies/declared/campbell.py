@@ -23,7 +23,7 @@ from gearidae.runs.execution import RunOptions, prepared
 from gearidae.runs.sweep_plan import SweepPlan
 from gearidae.runs.sweeping import run_plan
 from gearidae.scene import GearScene, require_gears
-from gearidae.scene.pairs import quantity, sweep_values
+from gearidae.scene.pairs import quantities, sweep_values
 from gearidae.scene.quantity import whole
 from gearidae.studies.study import Call, Column, Option, Picture, Rows, Study
 
@@ -39,9 +39,6 @@ _LEFT_OUT: Final = 0.2
 _HOLDS: Final = 30.0
 """Time constants of the speed in a run: six in what is left out, and each long against a period of the contact."""
 _HIGHEST_MULTIPLE: Final = 1000
-_DECADES: Final = 6
-_APART: Final = 0.02
-"""Part of the picture's height below which a line is not told from zero."""
 _ABOVE: Final = 1.3
 """Height of the picture over its highest line."""
 
@@ -128,8 +125,7 @@ def _sampled(scene: Scene) -> tuple[str, ...]:
 
 def _speeds(speeds: Sequence[Any]) -> Floats:
     """Speeds of the pinion in rising order [rad/s]."""
-    asked = [speeds] if isinstance(speeds, int | float | str) else list(speeds)
-    values = np.array([quantity("speeds", value, "rad/s") for value in asked], dtype=np.float64)
+    values = quantities("speeds", speeds, "rad/s")
     if not np.isfinite(values).all() or np.unique(values).size < 2 or values.min() <= 0.0:
         raise SceneError("speeds", str(speeds)[:60], "must be two speeds or more above 0 rad/s")
     return np.unique(values)
@@ -159,9 +155,8 @@ def _plan(base: GearScene, speeds: Floats, *, ringing: bool) -> tuple[GearScene,
         "initial.gear_speed": of_gear.tolist(),
     }
     if ringing:
-        from gearidae.runs.ringing_samples import (
-            counted,
-        )  # compiled code, which those who read files do without
+        # compiled code, which those who read files do without
+        from gearidae.runs.ringing_samples import counted
 
         base = base.replace({"run.samples": counted(_held(base.replace({"run.samples": "ringing"}), axis))})
     return base, SweepPlan(base, (axis,), _held(base, axis))
@@ -314,6 +309,7 @@ def picture(ds: xr.Dataset, ax: Axes | None = None, *, highest: float | None = N
     SceneError
         If the dataset is something else.
     """
+    from gearidae.drawing.density import draw_density, is_apart, legend_on_density, line_on_density
     from gearidae.drawing.style import label_axis, line_colour, line_width, new_axes
 
     STUDY.require(ds)
@@ -326,23 +322,11 @@ def picture(ds: xr.Dataset, ax: Axes | None = None, *, highest: float | None = N
         known = known[np.isfinite(known)]
         highest = _ABOVE * float(known.max()) if known.size else math.inf
     shown = ds.sel(frequency=slice(0.0, highest))
-    strongest = float(np.nanmax(np.append(shown["density"].values, 0.0))) or 1.0
-    level = 10.0 * np.log10(np.maximum(shown["density"].values, strongest * 10.0**-_DECADES))
-    colours = ax.pcolormesh(
-        speed, shown["frequency"], level.T, shading="nearest", cmap="viridis", rasterized=True
-    )
-    bar = ax.figure.colorbar(colours, ax=ax, pad=0.02)
     units = str(ds["density"].attrs["units"]).replace("rad s-1", "rad/s").replace(")2 Hz-1", ")²/Hz")
-    bar.set_label(f"dB re 1 {units}")
+    draw_density(ax, speed, shown["frequency"].values, shown["density"].values.T, units)
     top = float(shown["frequency"][-1])
     for number, multiple in enumerate(multiples):
-        ax.plot(
-            speed,
-            multiple * mesh,
-            color="white",
-            linewidth=line_width(0.8),
-            label="" if number else "mesh and multiples",
-        )
+        line_on_density(ax, speed, multiple * mesh, "" if number else "mesh and multiples")
         if multiple * mesh[-1] < top:
             place: dict[str, Any] = {"xytext": (-2, 3), "textcoords": "offset points", "ha": "right"}
             ax.annotate(
@@ -350,8 +334,8 @@ def picture(ds: xr.Dataset, ax: Axes | None = None, *, highest: float | None = N
             )
     for name, style in (("pinion", "--"), ("gear", ":")):
         line = mesh / int(ds.attrs[f"{name}_teeth"])
-        if np.nanmax(line) > _APART * top:
-            ax.plot(speed, line, style, color="white", linewidth=line_width(0.8), label=name)
+        if is_apart(line, top):
+            line_on_density(ax, speed, line, name, style)
     ax.plot(speed, contact, color=line_colour(4), linewidth=line_width(1.6), label="contact")
     met = np.isfinite(ds["critical_speed"].values)
     at = ds["critical_speed"].values[met]
@@ -361,7 +345,7 @@ def picture(ds: xr.Dataset, ax: Axes | None = None, *, highest: float | None = N
     ax.set_xlabel("speed of the pinion (rad/s)")
     if "note" in ds.attrs:
         ax.set_title(str(ds.attrs["note"]).replace("; ", ";\n"), fontsize="x-small", loc="left")
-    ax.legend(loc="upper left", fontsize="x-small", labelcolor="white", facecolor="0.2")
+    legend_on_density(ax, "x-small")
     return ax
 
 

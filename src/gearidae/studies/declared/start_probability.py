@@ -19,7 +19,7 @@ from gearidae.errors import SceneError
 from gearidae.runs.execution import RunOptions, prepared
 from gearidae.runs.sweeping import run_plan
 from gearidae.scene import GearScene, require_gears
-from gearidae.scene.pairs import quantity
+from gearidae.scene.pairs import quantities
 from gearidae.scene.pairs import texts as read_texts
 from gearidae.scene.prefixes import with_prefix
 from gearidae.studies.announcement import draw_words
@@ -120,8 +120,7 @@ def start_probability(
 
 def _times(scene: Scene, by: Sequence[Any] | float | str | None) -> Floats:
     """Times in rising order [s]."""
-    asked = [scene.run.duration] if by is None else [by] if isinstance(by, int | float | str) else list(by)
-    times = np.array([quantity("by", value, "s") for value in asked], dtype=np.float64)
+    times = quantities("by", scene.run.duration if by is None else by, "s")
     if not times.size or not np.isfinite(times).all() or times.min() <= 0.0:
         raise SceneError("by", str(by)[:60], "must be times above 0, such as [2e-3, 5e-3] or '5 ms'")
     return np.unique(times)
