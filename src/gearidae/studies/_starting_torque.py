@@ -214,7 +214,11 @@ def _rests(base: GearScene, rest_time: ArrayLike, sam_fraction: ArrayLike | None
     if all(joint.rise == 0.0 for joint in joints(base)):
         allowed = "needs friction that ages: gears.hub_friction_rise or drive.pin_friction_rise"
         raise SceneError("rest_time", rest_time, allowed)
-    return [float(time) for time in np.atleast_1d(numbers_of(rest_time, "s"))]
+    try:
+        times = numbers_of([rest_time] if isinstance(rest_time, str) else rest_time, "s")
+    except ValueError as error:
+        raise SceneError("rest_time", rest_time, str(error)) from None
+    return [float(time) for time in np.atleast_1d(times)]
 
 
 def _refuse_settings(**settings: Any) -> None:
