@@ -57,6 +57,16 @@ const gearidae = (() => {
     return unit === "rad s-1" ? (prefix ? prefix + "rad/s" : "rad/s") : prefix + unit.replace("m s-1", "m/s");
   }
 
+  // Draws in the next frame, once however often it is asked for.
+  function soon(draw) {
+    let waiting = false;
+    return () => {
+      if (waiting) return;
+      waiting = true;
+      requestAnimationFrame(() => { waiting = false; draw(); });
+    };
+  }
+
   // Draws anew whenever the size, the colours or the medium change.
   function whenSeenAnew(draw, later) {
     window.addEventListener("resize", later);
@@ -79,7 +89,50 @@ const gearidae = (() => {
     return { pen, width, height };
   }
 
+  // Values from the lowest to the highest, with room at both ends.
+  function withMargin([low, high]) {
+    const margin = 0.05 * (high - low) || 0.05 * Math.abs(high) || 1;
+    return [low - margin, high + margin];
+  }
+
+  // Grid of a plot, with margins left, right, top and bottom: times across, and the place of a time in pixels.
+  function timesAcross(pen, { left, right, top, bottom, width, height }, [from, to]) {
+    const inner = width - left - right, foot = height - bottom, x = (time) => left + inner * (time - from) / (to - from);
+    const scale = prefixOf(Math.max(Math.abs(from), Math.abs(to)));
+    const across = ticks(from * scale.factor, to * scale.factor, inner / 90);
+    pen.font = "12px system-ui, sans-serif";
+    pen.fillStyle = style("--faint");
+    pen.strokeStyle = style("--line");
+    pen.lineWidth = 1;
+    pen.textAlign = "center";
+    pen.textBaseline = "top";
+    for (const tick of across.found) {
+      const at = x(tick / scale.factor);
+      pen.beginPath(); pen.moveTo(at, top); pen.lineTo(at, foot); pen.stroke();
+      if (at < left + inner - 24) pen.fillText(tick.toFixed(across.digits), at, foot + 6);
+    }
+    pen.textAlign = "right";
+    pen.fillText(scale.prefix + "s", width - right, foot + 6);
+    return x;
+  }
+
+  // The same of values, after the times: so many of their unit to one in SI, ticks some pixels apart.
+  function valuesUp(pen, { left, right, top, bottom, width, height }, [low, high], factor, apart) {
+    const tall = height - top - bottom, y = (value) => top + tall * (high - value) / (high - low);
+    const up = ticks(low * factor, high * factor, tall / apart);
+    pen.textBaseline = "middle";
+    for (const tick of up.found) {
+      const at = y(tick / factor);
+      pen.beginPath(); pen.moveTo(left, at); pen.lineTo(width - right, at); pen.stroke();
+      pen.fillText(tick.toFixed(up.digits), left - 6, at);
+    }
+    return y;
+  }
+
   const slug = (text) => text.toLowerCase().replace(/[^a-z0-9]+/g, "_").replace(/^_+|_+$/g, "") || "report";
 
-  return { slug, decode, element, prefixOf, ticks, readable, style, colour, seconds, quantity, whenSeenAnew, penOf };
+  return {
+    slug, decode, element, prefixOf, ticks, readable, style, colour, seconds, quantity, soon, whenSeenAnew, penOf, withMargin, timesAcross,
+    valuesUp,
+  };
 })();

@@ -1,16 +1,14 @@
 // Runs to look through: sliders over what was swept and over time, turning gears, the force on the gear, speed and torque.
 (() => {
   "use strict";
-  const { decode, element, prefixOf, ticks, readable, style, colour, seconds, quantity, whenSeenAnew, penOf } = gearidae;
-  const { COAST, onLine, turned, drawPair, arrow } = gearidae.mesh;
+  const { decode, element, prefixOf, readable, style, colour, seconds, quantity, soon, whenSeenAnew, penOf, withMargin, timesAcross, valuesUp } = gearidae;
+  const { COAST, onLine, turned, drawNear, drawForce } = gearidae.mesh;
   const holder = document.getElementById("explorer"), source = document.getElementById("explorer-data");
   if (!holder || !source) return;
   const data = JSON.parse(source.textContent);
-  const ACROSS = 4.6, DOWN = 1.9, UP = 2.0, TEETH = 5, LONGEST = 1.4; // modules; teeth on either side
   const LEFT = 62, RIGHT = 10, TOP = 8, BOTTOM = 22;
-  const PLAYED = 14; // seconds for all pictures
   const WIDE = data.columns.length;
-  let run = null, frame = 0, playing = null, waiting = false;
+  let run = null, frame = 0;
   let places = data.dims.map(() => 0);
 
   function take(number) {
@@ -44,29 +42,15 @@
   }
 
   function drawMesh(state, gears) {
-    const sheet = penOf(mesh);
-    if (!sheet) return;
-    const { pen, width, height } = sheet, size = Math.min(width / (2 * ACROSS), height / (UP + DOWN));
-    const x = (a) => width / 2 + size * a, y = (b) => height / 2 + size * ((UP - DOWN) / 2 - b);
     const flank = state.coast_gap < state.drive_gap ? COAST : 0;
-    drawPair(pen, gears, turned(gears, state.travel * gears.pitch, state.transmission_error), x, y, TEETH, flank);
-    pen.font = "13px system-ui, sans-serif";
-    pen.textBaseline = "middle";
-    pen.textAlign = "left";
-    pen.fillStyle = style("--ink");
-    const way = state.gear_speed < 0 ? " ←" : " →";
-    pen.fillText("pinion, drives" + way, 8, 14);
-    pen.fillText("gear" + way, 8, height - 14);
-    const push = flank === COAST ? -state.mesh_force : state.mesh_force; // positive pushes the teeth apart
-    if (Math.abs(push) > 0.01 * data.largest) {
-      const [a, b] = onLine(gears, flank, gears.approach), [c, d] = onLine(gears, flank, gears.approach + gears.module);
-      const long = size * LONGEST * Math.sign(push) * Math.max(Math.abs(push) / data.largest, 0.2);
-      arrow(pen, [x(a), y(b)], [(c - a) * long, (b - d) * long], colour(push > 0 ? 0 : 1));
-    }
+    const motion = { travel: state.travel * gears.pitch, error: state.transmission_error, speed: state.gear_speed };
+    const near = drawNear(mesh, gears, motion, flank);
+    if (!near) return;
+    const { pen, at } = near, push = flank === COAST ? -state.mesh_force : state.mesh_force; // positive pushes the teeth apart
+    drawForce(near, gears, flank, gears.approach, push, data.largest);
     for (const place of pairPlaces(gears, flank, state.travel)) {
-      const [a, b] = onLine(gears, flank, place);
       pen.beginPath();
-      pen.arc(x(a), y(b), 5, 0, 2 * Math.PI);
+      pen.arc(...at(onLine(gears, flank, place)), 5, 0, 2 * Math.PI);
       pen.fillStyle = state.pairs_in_contact > 0 ? colour(push < 0 ? 1 : 0) : style("--ground");
       pen.strokeStyle = style("--ink");
       pen.lineWidth = 1.5;
@@ -124,44 +108,21 @@
   function drawCurve(plot, k) {
     const sheet = penOf(plot.canvas);
     if (!sheet) return;
-    const { pen, width, height } = sheet, inner = width - LEFT - RIGHT, tall = height - TOP - BOTTOM;
-    let [low, high] = data.ranges[k];
-    const margin = 0.05 * (high - low) || 0.05 * Math.abs(high) || 1;
-    low -= margin;
-    high += margin;
-    const scale = plot.unit === "rad s-1" ? { factor: 1, prefix: "" } : prefixOf(Math.max(Math.abs(low), Math.abs(high)));
+    const { pen, width, height } = sheet, box = { left: LEFT, right: RIGHT, top: TOP, bottom: BOTTOM, width, height };
+    const range = withMargin(data.ranges[k]), span = data.end - data.start || 1;
+    const scale = plot.unit === "rad s-1" ? { factor: 1, prefix: "" } : prefixOf(Math.max(...range.map(Math.abs)));
     plot.title.textContent = plot.label + " (" + readable(scale.prefix, plot.unit) + ")";
-    const x = (share) => LEFT + inner * share, y = (value) => TOP + tall * (high - value) / (high - low);
-    const across = prefixOf(data.end), span = data.end - data.start || 1;
-    pen.font = "12px system-ui, sans-serif";
-    pen.fillStyle = style("--faint");
-    pen.strokeStyle = style("--line");
-    pen.lineWidth = 1;
-    const lines = (found, begin, end, write) => found.forEach((tick) => {
-      pen.beginPath(); pen.moveTo(...begin(tick)); pen.lineTo(...end(tick)); pen.stroke();
-      write(tick);
-    });
-    const times = ticks(data.start * across.factor, (data.start + span) * across.factor, inner / 90), at = (tick) => x((tick / across.factor - data.start) / span);
-    pen.textAlign = "center";
-    pen.textBaseline = "top";
-    lines(times.found, (tick) => [at(tick), TOP], (tick) => [at(tick), TOP + tall], (tick) => {
-      if (at(tick) < x(1) - 24) pen.fillText(tick.toFixed(times.digits), at(tick), TOP + tall + 6);
-    });
-    pen.textAlign = "right";
-    pen.fillText(across.prefix + "s", width - RIGHT, TOP + tall + 6);
-    pen.textBaseline = "middle";
-    const up = ticks(low * scale.factor, high * scale.factor, tall / 28), beside = (tick) => y(tick / scale.factor);
-    lines(up.found, (tick) => [LEFT, beside(tick)], (tick) => [x(1), beside(tick)], (tick) => pen.fillText(tick.toFixed(up.digits), LEFT - 6, beside(tick)));
+    const x = timesAcross(pen, box, [data.start, data.start + span]), y = valuesUp(pen, box, range, scale.factor, 28);
     const values = run.lines[k];
     pen.strokeStyle = colour(0);
     pen.lineWidth = 1.4;
     pen.beginPath();
-    values.forEach((value, i) => { if (!Number.isNaN(value)) pen.lineTo(x(i / (values.length - 1 || 1)), y(value)); });
+    values.forEach((value, i) => { if (!Number.isNaN(value)) pen.lineTo(x(data.start + span * i / (values.length - 1 || 1)), y(value)); });
     pen.stroke();
-    const here = x((timeOf(frame) - data.start) / span);
+    const here = x(timeOf(frame));
     pen.strokeStyle = style("--ink");
     pen.lineWidth = 1;
-    pen.beginPath(); pen.moveTo(here, TOP); pen.lineTo(here, TOP + tall); pen.stroke();
+    pen.beginPath(); pen.moveTo(here, TOP); pen.lineTo(here, height - BOTTOM); pen.stroke();
   }
 
   function wordsOf(state) {
@@ -185,11 +146,7 @@
     readout.textContent = wordsOf(state);
   }
 
-  function later() {
-    if (waiting) return;
-    waiting = true;
-    requestAnimationFrame(() => { waiting = false; draw(); });
-  }
+  const later = soon(draw);
 
   function show(index, tell) {
     frame = Math.max(0, Math.min(data.frames - 1, index));
@@ -213,26 +170,6 @@
     later();
   }
 
-  function play() {
-    if (playing !== null) { stop(); return; }
-    const from = frame < data.frames - 1 ? frame : 0, perSecond = Math.max(data.frames / PLAYED, 1);
-    let began = null;
-    button.textContent = "Pause";
-    const step = (time) => {
-      if (began === null) began = time;
-      const index = Math.floor(from + perSecond * (time - began) / 1000);
-      if (index !== frame) show(index, true);
-      if (index >= data.frames - 1) stop(); else playing = requestAnimationFrame(step);
-    };
-    playing = requestAnimationFrame(step);
-  }
-
-  function stop() {
-    if (playing !== null) cancelAnimationFrame(playing);
-    playing = null;
-    button.textContent = "Play";
-  }
-
   const board = element("div", holder, "", { className: "sliders" });
   const sliders = data.dims.map((dim, k) => {
     const label = element("label", board), name = element("span", label, dim.name), output = element("output", label);
@@ -247,17 +184,9 @@
   const showMap = data.dims.length ? gearidae.outcomeMap(holder, data, choose) : null;
   const verdict = element("p", holder, "", { className: "verdict" });
   verdict.setAttribute("aria-live", "polite");
-  const controls = element("div", holder, "", { className: "controls" });
-  const button = element("button", controls, "Play", { type: "button" });
-  button.addEventListener("click", play);
-  for (const [sign, name, step] of [["−1", "one picture back", -1], ["+1", "one picture on", 1]]) {
-    const single = element("button", controls, sign, { type: "button", title: name });
-    single.setAttribute("aria-label", name);
-    single.addEventListener("click", () => { stop(); show(frame + step, true); });
-  }
-  const slider = element("input", controls, "", { type: "range", min: 0, max: data.frames - 1, step: 1, value: 0 });
-  slider.setAttribute("aria-label", "time");
-  slider.addEventListener("input", () => { stop(); show(Number(slider.value), true); });
+  const everything = () => [0, data.frames - 1];
+  const { slider, stop } = gearidae.player(holder, "time", () => frame, everything, (index) => show(index, true));
+  slider.max = data.frames - 1;
   const readout = element("output", holder);
   const stage = element("div", holder, "", { className: "stage" });
   const [left, right] = ["left", "right"].map((name) => element("div", stage, "", { className: name }));

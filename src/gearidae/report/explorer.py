@@ -97,7 +97,7 @@ def build_explorer(ds: xr.Dataset, *, most_values: int = MOST_VALUES, teeth: boo
         html.section("explore", "Gears and runs", viewer + html.json_block("explorer-data", data)),
         html.section("outcome", "Outcome", html.folded("Outcome of each run", outcome_table(ds))),
     ]
-    scripts = ["common.js", "mesh.js", "map.js", "explorer.js"]
+    scripts = ["common.js", "player.js", "mesh.js", "map.js", "explorer.js"]
     if teeth:
         player = '<div id="teeth-viewer"></div>\n' + html.json_block("teeth-data", pack_teeth(ds))
         sections.insert(1, html.section("teeth", "Teeth in mesh", player))

@@ -1,7 +1,9 @@
 // Two gears in mesh, to scale: outlines, points of the lines of action, arrows of forces. Lengths in modules, the pitch point is the origin.
 (() => {
   "use strict";
+  const { style, colour, penOf } = gearidae;
   const COAST = 1;
+  const ACROSS = 4.6, DOWN = 1.9, UP = 2.0, TEETH = 5, LONGEST = 1.4; // modules; teeth on either side
 
   // Point of a flank's line of action by its place along the path of contact [m].
   function onLine(gears, flank, place) {
@@ -39,11 +41,16 @@
     pen.closePath();
   }
 
-  // Both gears near the pitch point and the lines of action; the one that is not in use is dashed.
-  function drawPair(pen, gears, angles, x, y, teeth, used) {
-    const { style } = gearidae;
+  // Both gears near the pitch point and the lines of action, of which the one that is not in use is dashed. Gives the pen, and the place
+  // of a point in pixels; null while the canvas is not shown.
+  function drawNear(canvas, gears, { travel, error, speed }, used) {
+    const sheet = penOf(canvas);
+    if (!sheet) return null;
+    const { pen, width, height } = sheet, size = Math.min(width / (2 * ACROSS), height / (UP + DOWN));
+    const x = (a) => width / 2 + size * a, y = (b) => height / 2 + size * ((UP - DOWN) / 2 - b);
+    const angles = turned(gears, travel, error);
     [gears.pinion, gears.gear].forEach((wheel, k) => {
-      outline(pen, wheel, angles[k], x, y, teeth);
+      outline(pen, wheel, angles[k], x, y, TEETH);
       pen.fillStyle = style(k ? "--gear" : "--pinion");
       pen.strokeStyle = style("--ink");
       pen.lineWidth = 1;
@@ -61,6 +68,22 @@
       pen.stroke();
     }
     pen.setLineDash([]);
+    pen.fillStyle = style("--ink");
+    pen.font = "13px system-ui, sans-serif";
+    pen.textBaseline = "middle";
+    pen.textAlign = "left";
+    const way = speed < 0 ? " ←" : " →";
+    pen.fillText("pinion, drives" + way, 8, 14);
+    pen.fillText("gear" + way, 8, height - 14);
+    return { pen, at: ([a, b]) => [x(a), y(b)] };
+  }
+
+  // A force at a place of a line of action, positive where it pushes: long enough to be seen beside a mark, none for a hundredth of the largest.
+  function drawForce({ pen, at }, gears, flank, place, force, largest) {
+    if (!(Math.abs(force) > 0.01 * largest)) return;
+    const [a, b] = at(onLine(gears, flank, place)), [c, d] = at(onLine(gears, flank, place + gears.module));
+    const share = Math.max(Math.abs(force) / largest, 0.2) * Math.sign(force) * LONGEST;
+    arrow(pen, [a, b], [(c - a) * share, (d - b) * share], colour(force > 0 ? 0 : 1));
   }
 
   // From a point along a vector, in pixels.
@@ -78,5 +101,5 @@
     pen.fill();
   }
 
-  gearidae.mesh = { COAST, onLine, turned, drawPair, arrow };
+  gearidae.mesh = { COAST, onLine, turned, drawNear, drawForce };
 })();

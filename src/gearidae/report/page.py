@@ -77,7 +77,7 @@ def build_report(ds: xr.Dataset, *, most_values: int | None = None, teeth: bool 
         html.section("pictures", "Pictures", pictures(ds)),
         html.section("events", "Events", _long(event_table(ds), ds)),
     )
-    scripts = ("common.js", "save.js", "box.js", "map.js", "viewer.js", "mesh.js", "teeth.js")
+    scripts = ("common.js", "save.js", "box.js", "map.js", "viewer.js", "player.js", "mesh.js", "teeth.js")
     return page(ds, "report", headline(ds), sections, scripts)
 
 

@@ -1,19 +1,16 @@
 // The teeth in mesh: both gears to scale, and the pairs that meet close up. Follows the time series' cursor.
 (() => {
   "use strict";
-  const { decode, element, style, colour, seconds, quantity, whenSeenAnew, penOf } = gearidae;
-  const { COAST, onLine, turned, drawPair, arrow } = gearidae.mesh;
+  const { decode, element, style, colour, seconds, quantity, soon, whenSeenAnew, penOf } = gearidae;
+  const { COAST, onLine, drawNear, drawForce } = gearidae.mesh;
   const holder = document.getElementById("teeth-viewer");
   const source = document.getElementById("teeth-data");
   if (!holder || !source) return;
   const data = JSON.parse(source.textContent);
-  const ACROSS = 4.6, DOWN = 1.9, UP = 2.0, TEETH = 5, LONGEST = 1.4; // modules; teeth on either side
   const BELOW = 3.5, ABOVE = 12; // roughnesses
   const OPEN = 0, LOADING = 1, PARTLY = 2, FULLY = 3;
-  const PLAYED = 14; // seconds for what is in view
   const FRAME = data.columns.frame.length, PAIR = data.columns.pair.length;
-  const still = window.matchMedia("(prefers-reduced-motion: reduce)");
-  let run = null, frame = 0, view = null, playing = null, waiting = false;
+  let run = null, frame = 0, view = null;
 
   function take(number) {
     run = data.runs[number];
@@ -54,31 +51,12 @@
   const nearest = (time) => Math.max(0, Math.min(run.rows - 1, Math.round(time / frameOf(run.rows - 1).time * (run.rows - 1)) || 0));
 
   function drawMesh(now, pairs) {
-    const sheet = penOf(mesh);
-    if (!sheet) return;
-    const { pen, width, height } = sheet;
-    const size = Math.min(width / (2 * ACROSS), height / (UP + DOWN));
-    const x = (a) => width / 2 + size * a, y = (b) => height / 2 + size * ((UP - DOWN) / 2 - b);
     const used = pairs.length && pairs[0].flank === COAST ? COAST : 0;
-    drawPair(pen, run, turned(run, now.phase * run.pitch, now.transmission_error), x, y, TEETH, used);
-    function at([a, b]) { return [x(a), y(b)]; }
-    pen.fillStyle = style("--ink");
-    pen.font = "13px system-ui, sans-serif";
-    pen.textBaseline = "middle";
-    pen.textAlign = "left";
-    const way = now.gear_speed < 0 ? " ←" : " →";
-    pen.fillText("pinion, drives" + way, 8, 14);
-    pen.fillText("gear" + way, 8, height - 14);
-    for (const pair of pairs) force(pen, pair, at);
-    for (const pair of pairs) mark(pen, pair, at);
-  }
-
-  // The force of a pair on the gear: long enough to be seen beside the mark, none for a hundredth of the largest.
-  function force(pen, pair, at) {
-    if (!(Math.abs(pair.force) > 0.01 * run.largest) || pair.state === OPEN) return;
-    const [a, b] = at(onLine(run, pair.flank, pair.place)), [c, d] = at(onLine(run, pair.flank, pair.place + run.module));
-    const share = Math.max(Math.abs(pair.force) / run.largest, 0.2) * Math.sign(pair.force) * LONGEST;
-    arrow(pen, [a, b], [(c - a) * share, (d - b) * share], colour(pair.force > 0 ? 0 : 1));
+    const motion = { travel: now.phase * run.pitch, error: now.transmission_error, speed: now.gear_speed };
+    const near = drawNear(mesh, run, motion, used);
+    if (!near) return;
+    for (const pair of pairs) if (pair.state !== OPEN) drawForce(near, run, pair.flank, pair.place, pair.force, run.largest);
+    for (const pair of pairs) mark(near.pen, pair, near.at);
   }
 
   const faceOf = (state) => ({ [OPEN]: style("--ground"), [LOADING]: colour(0), [PARTLY]: colour(4), [FULLY]: colour(1) })[state] || style("--faint");
@@ -224,11 +202,7 @@
     }
   }
 
-  function later() {
-    if (waiting) return;
-    waiting = true;
-    requestAnimationFrame(() => { waiting = false; draw(); });
-  }
+  const later = soon(draw);
 
   function show(index, tell) {
     frame = Math.max(0, Math.min(run.rows - 1, index));
@@ -236,41 +210,9 @@
     later();
   }
 
-  // What is in view of the time series, once through; then it stops.
-  function play() {
-    if (playing !== null) { stop(); return; }
-    const end = frameOf(run.rows - 1).time;
-    const from = nearest(view ? view.from : 0), to = nearest(view ? view.to : end);
-    let start = frame > from && frame < to ? frame : from, began = null;
-    const perSecond = Math.max((to - from) / PLAYED, 1);
-    button.textContent = "Pause";
-    const step = (time) => {
-      if (began === null) began = time;
-      const index = Math.floor(start + perSecond * (time - began) / 1000);
-      if (index !== frame) show(Math.min(index, to), true);
-      if (index >= to) stop(); else playing = requestAnimationFrame(step);
-    };
-    playing = requestAnimationFrame(step);
-  }
-
-  function stop() {
-    if (playing !== null) cancelAnimationFrame(playing);
-    playing = null;
-    button.textContent = "Play";
-  }
-
-  const controls = element("div", holder, "", { className: "controls" });
-  const button = element("button", controls, "Play", { type: "button" });
-  if (still.matches) button.title = "moves the picture";
-  button.addEventListener("click", play);
-  for (const [sign, name, step] of [["−1", "one picture back", -1], ["+1", "one picture on", 1]]) {
-    const single = element("button", controls, sign, { type: "button", title: name });
-    single.setAttribute("aria-label", name);
-    single.addEventListener("click", () => { stop(); show(frame + step, true); });
-  }
-  const slider = element("input", controls, "", { type: "range", min: 0, step: 1, value: 0 });
-  slider.setAttribute("aria-label", "time of the picture of the teeth");
-  slider.addEventListener("input", () => { stop(); show(Number(slider.value), true); });
+  // What is in view of the time series is played.
+  const inView = () => [nearest(view ? view.from : 0), nearest(view ? view.to : frameOf(run.rows - 1).time)];
+  const { controls, slider, stop } = gearidae.player(holder, "time of the picture of the teeth", () => frame, inView, (index) => show(index, true));
   if (data.runs.length > 1) {
     const choice = element("select", controls, "", {});
     choice.setAttribute("aria-label", "run shown");

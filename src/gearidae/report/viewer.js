@@ -1,7 +1,7 @@
 // Time series of a report: panels over one common time axis. No library, no network.
 (() => {
   "use strict";
-  const { decode, element, prefixOf, ticks, readable, style, colour, seconds, whenSeenAnew, penOf } = gearidae;
+  const { decode, element, prefixOf, readable, style, colour, seconds, soon, whenSeenAnew, penOf, withMargin, timesAcross, valuesUp } = gearidae;
   const holder = document.getElementById("viewer");
   const source = document.getElementById("data");
   if (!holder || !source) return;
@@ -18,13 +18,9 @@
   const since = [...data.chosen];
   const places = () => [...drawn.keys()].filter((place) => drawn[place] !== null);
   const seen = () => places().filter((place) => !hidden.has(drawn[place]));
-  let cursor = null, followed = null, waiting = false, boxing = false, near = data.chosen[0]; // near: the map shows its part
+  let cursor = null, followed = null, boxing = false, near = data.chosen[0]; // near: the map shows its part
 
-  function later() {
-    if (waiting) return;
-    waiting = true;
-    requestAnimationFrame(() => { waiting = false; drawAll(); });
-  }
+  const later = soon(drawAll);
 
   function drawAll() {
     for (const panel of panels) if (!panel.box.hidden) draw(panel);
@@ -45,8 +41,7 @@
       }
     }
     if (!(low <= high)) return null;
-    const margin = 0.05 * (high - low) || 0.05 * Math.abs(high) || 1;
-    return [low - margin, high + margin];
+    return withMargin([low, high]);
   }
 
   // The liveliest run goes to the back, so that it does not hide the others.
@@ -72,38 +67,13 @@
   function draw(panel) {
     const sheet = penOf(panel.canvas);
     if (!sheet) return;
-    const { pen, width, height } = sheet;
-    pen.font = "12px system-ui, sans-serif";
-    const inner = width - LEFT - RIGHT, tall = height - TOP - BOTTOM;
-    const x = (time) => LEFT + inner * (time - view.from) / (view.to - view.from);
-    pen.fillStyle = style("--faint");
-    pen.strokeStyle = style("--line");
-    pen.lineWidth = 1;
-
-    const seconds = prefixOf(Math.max(Math.abs(view.from), Math.abs(view.to)));
-    const across = ticks(view.from * seconds.factor, view.to * seconds.factor, inner / 90);
-    pen.textAlign = "center";
-    pen.textBaseline = "top";
-    for (const tick of across.found) {
-      const at = x(tick / seconds.factor);
-      pen.beginPath(); pen.moveTo(at, TOP); pen.lineTo(at, TOP + tall); pen.stroke();
-      if (at < LEFT + inner - 24) pen.fillText(tick.toFixed(across.digits), at, TOP + tall + 6);
-    }
-    pen.textAlign = "right";
-    pen.fillText(seconds.prefix + "s", width - RIGHT, TOP + tall + 6);
-
+    const { pen, width, height } = sheet, box = { left: LEFT, right: RIGHT, top: TOP, bottom: BOTTOM, width, height };
+    const inner = width - LEFT - RIGHT, tall = height - TOP - BOTTOM, x = timesAcross(pen, box, [view.from, view.to]);
     const range = panel.range = rangeOf(panel);
     if (!range) return;
     const scale = panel.unit ? prefixOf(Math.max(Math.abs(range[0]), Math.abs(range[1]))) : { factor: 1, prefix: "" };
     panel.title.textContent = panel.label + (panel.unit ? " (" + readable(scale.prefix, panel.unit) + ")" : "");
-    const y = (value) => TOP + tall * (range[1] - value) / (range[1] - range[0]);
-    const up = ticks(range[0] * scale.factor, range[1] * scale.factor, tall / 32);
-    pen.textBaseline = "middle";
-    for (const tick of up.found) {
-      const at = y(tick / scale.factor);
-      pen.beginPath(); pen.moveTo(LEFT, at); pen.lineTo(LEFT + inner, at); pen.stroke();
-      pen.fillText(tick.toFixed(up.digits), LEFT - 6, at);
-    }
+    const y = valuesUp(pen, box, range, scale.factor, 32);
 
     pen.save();
     pen.beginPath(); pen.rect(LEFT, TOP, inner, tall); pen.clip();
