@@ -132,7 +132,7 @@ const gearidae = (() => {
   const slug = (text) => text.toLowerCase().replace(/[^a-z0-9]+/g, "_").replace(/^_+|_+$/g, "") || "report";
 
   return {
-    slug, decode, element, prefixOf, ticks, readable, style, colour, seconds, quantity, soon, whenSeenAnew, penOf, withMargin, timesAcross,
+    slug, decode, element, prefixOf, readable, style, colour, seconds, quantity, soon, whenSeenAnew, penOf, withMargin, timesAcross,
     valuesUp,
   };
 })();

@@ -13,7 +13,6 @@
 
   function take(number) {
     run = data.runs[number];
-    run.number = number;
     if (!run.numbers) {
       run.numbers = decode(run.frames);
       run.rows = run.numbers.length / WIDE;

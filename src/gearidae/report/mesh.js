@@ -32,11 +32,10 @@
         pen.lineTo(x(a), y(b + wheel.centre));
       }
     }
-    const size = wheel.rim / Math.hypot(...last);
     const from = Math.atan2(last[1], last[0]), sweep = (Math.atan2(first[1], first[0]) - from + 4 * Math.PI) % (2 * Math.PI);
     for (let k = 0; k <= 40; k++) {
-      const angle = from + sweep * k / 40, radius = size * Math.hypot(...last);
-      pen.lineTo(x(radius * Math.cos(angle)), y(radius * Math.sin(angle) + wheel.centre));
+      const angle = from + sweep * k / 40;
+      pen.lineTo(x(wheel.rim * Math.cos(angle)), y(wheel.rim * Math.sin(angle) + wheel.centre));
     }
     pen.closePath();
   }

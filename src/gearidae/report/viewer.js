@@ -28,18 +28,22 @@
     report();
   }
 
-  // Extremes of what is in view, so that the scale follows the zoom.
+  // Smallest and largest of some values in view.
+  function extremesOf(values) {
+    const [first, last] = indices(values);
+    let low = Infinity, high = -Infinity;
+    for (let i = first; i <= last; i++) {
+      if (values[i] < low) low = values[i];
+      if (values[i] > high) high = values[i];
+    }
+    return [low, high];
+  }
+
+  // Of what is in view, so that the scale follows the zoom.
   function rangeOf(panel) {
     if (panel.chosen) return panel.chosen;
-    let low = Infinity, high = -Infinity;
-    for (const place of seen()) {
-      const values = panel.valuesOf(drawn[place]), [first, last] = indices(values);
-      for (let i = first; i <= last; i++) {
-        const value = values[i];
-        if (value < low) low = value;
-        if (value > high) high = value;
-      }
-    }
+    const ends = seen().map((place) => extremesOf(panel.valuesOf(drawn[place])));
+    const low = Math.min(...ends.map((one) => one[0])), high = Math.max(...ends.map((one) => one[1]));
     if (!(low <= high)) return null;
     return withMargin([low, high]);
   }
@@ -48,12 +52,7 @@
   function byLiveliness(panel) {
     const spread = drawn.map((run) => {
       if (run === null) return 0;
-      const values = panel.valuesOf(run), [first, last] = indices(values);
-      let low = Infinity, high = -Infinity;
-      for (let i = first; i <= last; i++) {
-        if (values[i] < low) low = values[i];
-        if (values[i] > high) high = values[i];
-      }
+      const [low, high] = extremesOf(panel.valuesOf(run));
       return high - low;
     });
     return seen().sort((a, b) => spread[b] - spread[a]);
