@@ -244,3 +244,19 @@ def test_a_long_sweep_is_announced_once_where_no_bar_is_seen(wanted, every, said
         for done in range(4):
             report(float(done), 20)
     assert [record.getMessage() for record in caplog.records] == said
+
+
+def test_nothing_is_foretold_where_there_may_be_far_fewer_runs(kernel, monkeypatch, caplog):
+    now = [0.0]
+    monkeypatch.setattr(progress, "monotonic", lambda: now[0])
+    with progress.sweep_progress(True, 1000, at_most=True) as report:
+        for now[0] in (0.0, 60.0):
+            report(now[0] / 60.0 + 1.0, 1000)
+    assert "2 of 1000 runs" in kernel[-1]["text/plain"]
+    assert "left" not in kernel[-1]["text/plain"]
+    monkeypatch.setattr(progress, "_notebook", lambda: None)
+    monkeypatch.setattr(sys, "stderr", io.StringIO())
+    with progress.sweep_progress(True, 1000, at_most=True) as report:
+        for now[0] in (0.0, 60.0):
+            report(now[0] / 60.0 + 1.0, 1000)
+    assert not caplog.records

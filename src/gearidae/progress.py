@@ -155,7 +155,7 @@ def in_words(seconds: float) -> str:
 
 @contextmanager
 def sweep_progress(
-    wanted: bool | SweepProgress, runs: int, expected: Callable[[], str] = str
+    wanted: bool | SweepProgress, runs: int, expected: Callable[[], str] = str, *, at_most: bool = False
 ) -> Iterator[SweepProgress]:
     """Show how far a sweep is, and how long it will go on at the rate of all its cores.
 
@@ -169,6 +169,8 @@ def sweep_progress(
         Number of runs.
     expected : callable, optional
         How long they will take, in words, asked for only if a bar is seen: shown until their rate is known.
+    at_most : bool, optional
+        Whether there may be far fewer: then nobody knows how long they will take.
 
     Yields
     ------
@@ -180,7 +182,7 @@ def sweep_progress(
         return
     _check(wanted)
     with _bar("sweeping", float(runs)) if wanted else nullcontext() as advance:
-        long = _UNSEEN if wanted and advance is None else math.inf
+        long = _UNSEEN if wanted and advance is None and not at_most else math.inf
         pace = _Pace(float(runs), f"the {runs} runs take", long, _MANY_RECENT)
         busy = threading.Lock()
         hint = ""
@@ -192,7 +194,7 @@ def sweep_progress(
                 rate = pace.rate(done)
             if advance is not None:
                 words = f"{done:.4g} of {runs} runs"
-                if rate > 0.0:
+                if rate > 0.0 and not at_most:
                     advance(done, words, max(runs - done, 0.0) / rate)
                 else:
                     advance(done, f"{words}, {hint}" if hint else words, math.nan)

@@ -136,7 +136,7 @@ def life(
     def work(kept: RunCache | None) -> xr.Dataset:
         samples.kept = kept
         with (
-            sweep_progress(execution.progress, MOST_STATES) as samples.report,
+            sweep_progress(execution.progress, MOST_STATES, at_most=True) as samples.report,
             execution.computing(starts) as samples.executor,
         ):
             jump(
