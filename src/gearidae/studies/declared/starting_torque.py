@@ -381,6 +381,20 @@ def picture_of_gears(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     return ax
 
 
+def _torque_columns(along: tuple[str]) -> dict[str, Column]:
+    """Columns of starting torques along the coverage or the time at rest."""
+    return {
+        "static_torque": Column(along, "N m", "starting torque without inertia"),
+        "simulated_torque": Column(
+            along, "N m", "smallest simulated torque at which the gear turns from rest"
+        ),
+        "simulated_stuck": Column(along, "N m", "largest simulated torque at which the gear sticks"),
+        "parts": Column((*along, "part"), "N m", "what each part takes of the static torque", required=False),
+        "part": Column(("part",), "", "what takes a starting torque", required=False),
+        "message": Column(along, "", "how the run of a torque has failed", required=False),
+    }
+
+
 STUDY = Study(
     kind="starting_torque",
     words="study of starting torques",
@@ -392,18 +406,7 @@ STUDY = Study(
         "gearidae starting-torque mine.toml --over coating.sam_fraction=1:0.4:-0.1 --impacts 1",
         'gearidae starting-torque mine.toml --rest "1 ms,1 s"',
     ),
-    columns={
-        "static_torque": Column(_ALONG, "N m", "starting torque without inertia"),
-        "simulated_torque": Column(
-            _ALONG, "N m", "smallest simulated torque at which the gear turns from rest"
-        ),
-        "simulated_stuck": Column(_ALONG, "N m", "largest simulated torque at which the gear sticks"),
-        "parts": Column(
-            (*_ALONG, "part"), "N m", "what each part takes of the static torque", required=False
-        ),
-        "part": Column(("part",), "", "what takes a starting torque", required=False),
-        "message": Column(_ALONG, "", "how the run of a torque has failed", required=False),
-    },
+    columns=_torque_columns(_ALONG),
     sentence=_sentence,
     rows=_rows,
     pictures=(
@@ -416,16 +419,7 @@ RESTS = Study(
     maker="starting-torque --rest",
     columns={
         "rest_time": Column(_AFTER, "s", "time at rest before the start"),
-        "static_torque": Column(_AFTER, "N m", "starting torque without inertia"),
-        "simulated_torque": Column(
-            _AFTER, "N m", "smallest simulated torque at which the gear turns from rest"
-        ),
-        "simulated_stuck": Column(_AFTER, "N m", "largest simulated torque at which the gear sticks"),
-        "parts": Column(
-            (*_AFTER, "part"), "N m", "what each part takes of the static torque", required=False
-        ),
-        "part": Column(("part",), "", "what takes a starting torque", required=False),
-        "message": Column(_AFTER, "", "how the run of a torque has failed", required=False),
+        **_torque_columns(_AFTER),
     },
     sentence=_rests_sentence,
     rows=_rows,
