@@ -82,6 +82,7 @@ def test_its_file_says_what_it_is_and_is_drawn(rests, tmp_path):
         ({}, {"sam_fraction": [1.0, 0.5]}, "sam_fraction"),
         ({"contact.roughness": "discrete"}, {}, "rest_time"),
         ({}, {"rest_time": -1.0}, "initial.rest_time"),
+        ({}, {"rest_time": "2 kg"}, "rest_time"),
     ],
 )
 def test_what_does_not_go_with_times_at_rest_is_refused(changes, more, key):

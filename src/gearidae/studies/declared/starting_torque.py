@@ -308,9 +308,7 @@ def _torques_over(ds: xr.Dataset, places: Floats, ax: Axes | None) -> Axes:
                 label=label,
             )
     if not drawn:
-        raise SceneError(
-            "plot", "starting_torque", "adhesion does not hold the gear at any of these fractions"
-        )
+        raise SceneError("plot", "starting_torque", "adhesion does not hold the gear at any of these points")
     tidy(ax)
     if ds.attrs.get("drive_torque", 0.0) > 0.0:
         mark_value(ax.axhline, ds.attrs["drive_torque"], _OWN)
