@@ -14,16 +14,18 @@ class WrittenCall:
 
     Parameters
     ----------
+    name : str
+        Of the function in this module.
     typed : callable
         As for ``numba.extending.intrinsic``.
     """
 
-    def __init__(self, typed: Callable[..., Any]) -> None:
-        self._typed = typed
+    def __init__(self, name: str, typed: Callable[..., Any]) -> None:
+        self._name, self._typed = name, typed
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Say where it stands, as `gearidae.compiled.Function` does."""
-        return named, (__name__, "call_at", ())
+        return named, (__name__, self._name, ())
 
     @cached_property
     def _numba_type_(self) -> Any:
@@ -57,4 +59,4 @@ def _typed(  # the arguments of the law, where its parameters are, and which num
     return real(whole, real, real, real, numbers, whole, whole, whole), call
 
 
-call_at: Any = WrittenCall(_typed)
+call_at: Any = WrittenCall("call_at", _typed)

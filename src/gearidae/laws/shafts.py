@@ -1,7 +1,8 @@
 """All laws of a shaft, and their sums.
 
 The first laws drive: they are the torque of the drive at the pinion, and at the gear the limit of the dry resistance.
-The others act on either shaft as they are. Sums begin at -0.0, to which adding a number gives that number.
+The others act on either shaft as they are. Sums of forces begin at -0.0, to which adding a number gives that number;
+those of rates and losses begin at 0.0.
 """
 
 from __future__ import annotations
@@ -36,36 +37,63 @@ SHAFT_LAWS: Final[tuple[ShaftLaw, ...]] = (
 """In the order of additions."""
 
 _DRIVING = tuple(law for law in SHAFT_LAWS if law.drives)
-_ACTING = tuple(law for law in SHAFT_LAWS if not law.drives)
+ACTING: Final = tuple(law for law in SHAFT_LAWS if not law.drives)
+"""A shaft says which of these it has: the constant `acts` is the sum of 1, 2, 4.. by their places here."""
+
+
+def _bit(law: ShaftLaw) -> int:
+    return 1 << ACTING.index(law)
+
+
+def _where_it_acts(law: ShaftLaw, verb: Verb | None) -> Verb | None:
+    """Verb of a law that acts, which is asked on the shafts that have the law only: most have few of them."""
+    if verb is None:
+        return None
+    bit = _bit(law)
+
+    @compiled(inline=True)
+    def ask(*arguments: Any) -> Any:
+        value = arguments[-1]
+        if arguments[0].scene.torque[arguments[1]].acts & bit != 0:
+            value = verb(*arguments)
+        return value
+
+    return ask
+
+
+def _acting(name: str) -> tuple[Verb | None, ...]:
+    """Verbs of one name of the laws that act."""
+    return tuple(_where_it_acts(law, getattr(law, name)) for law in ACTING)
+
 
 _driving = in_turn(tuple(law.force for law in _DRIVING))
 _driving_rate = in_turn(tuple(law.rate for law in _DRIVING))
 _constant = in_turn(tuple(law.is_constant for law in _DRIVING))
 _steady = in_turn(tuple(law.is_steady for law in _DRIVING))
 _range = in_turn(tuple(law.range for law in _DRIVING))
-acting = in_turn(tuple(law.force for law in _ACTING))
+acting = in_turn(_acting("force"))
 """Add what acts on a shaft besides its driving torque: (m, shaft, t, angle, speed, value) -> value."""
-by_speed = in_turn(tuple(law.by_speed for law in SHAFT_LAWS))
+by_speed = in_turn((*(law.by_speed for law in _DRIVING), *_acting("by_speed")))
 """Add the slopes of all forces on a shaft in its speed: (m, shaft, angle, speed, value) -> value."""
-by_angle = in_turn(tuple(law.by_angle for law in SHAFT_LAWS))
-"""Add the slopes of all forces on a shaft in its angle [1/rad]: (m, shaft, angle, speed, value) -> value."""
-_losses = in_turn(tuple(law.loss for law in _ACTING))
-stored = in_turn(tuple(law.energy for law in _ACTING))
+by_angle = in_turn(_acting("by_angle"))
+"""Add the slopes of what acts on a shaft in its angle [1/rad]: (m, shaft, angle, speed, value) -> value."""
+_losses = in_turn(_acting("loss"))
+stored_by_laws = in_turn(_acting("energy"))
 """Add the energies that laws of a shaft store: (m, shaft, angle, value) -> value."""
-guard = in_turn(tuple(law.guard for law in _ACTING))
+guard = in_turn(_acting("guard"))
 """Take the least distance of the laws of a shaft to their next switch: (m, shaft, angle, speed, value) -> value."""
-switch = in_turn(tuple(law.switch for law in _ACTING))
+switch = in_turn(_acting("switch"))
 """Switch the first law whose guard has fallen: (m, shaft, angle, speed, -1) -> number of its event, -1 if none has."""
 
 
-def _writer(law: ShaftLaw, place: int) -> Verb:
+def _writer(law: ShaftLaw) -> Verb:
     """Verb that writes the torque of a law into a row of samples, where a shaft has it; `value` is the place there."""
-    force, bit = law.force, 1 << place
+    force, bit = law.force, _bit(law)
 
     @compiled
     def write(m: Any, shaft: int, t: float, angle: float, speed: float, row: Any, value: int) -> int:
         torque = m.scene.torque[shaft]
-        if torque.sampled & bit == 0:
+        if torque.acts & bit == 0:
             return value
         radius = m.scene.length_unit / torque.angle_unit
         row[value] = force(m, shaft, t, angle, speed, -0.0) * m.scene.force_unit * radius
@@ -74,8 +102,8 @@ def _writer(law: ShaftLaw, place: int) -> Verb:
     return write
 
 
-SAMPLED: Final = tuple(law for law in SHAFT_LAWS if law.sample is not None)
-write_samples = in_turn(tuple(_writer(law, place) for place, law in enumerate(SAMPLED)))
+SAMPLED: Final = tuple(law for law in ACTING if law.sample is not None)
+write_samples = in_turn(tuple(_writer(law) for law in SAMPLED))
 """Write the torques of all sampled laws of a shaft: (m, shaft, t, angle, speed, row, place) -> next place."""
 
 
@@ -127,7 +155,7 @@ def book_losses(m: Model, shaft: int, h: float, angle: float, travel: float, tur
 
 
 def has_law(scene: Any, shaft: int, law: ShaftLaw) -> bool:
-    """Whether a shaft has a law whose keys are those of the gears."""
+    """Whether a key of a law in the gears' table is not 0 for a shaft."""
     return any(number_of(scene, shaft, constant.name) != 0.0 for constant in law.coefficients if constant.key)
 
 

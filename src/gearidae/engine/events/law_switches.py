@@ -1,4 +1,4 @@
-"""Where laws switch: guards of the laws of a shaft; of registered torque laws knots and zeros of a function."""
+"""Switches of laws: guards of the laws that act on a shaft, and knots and zeros of registered torque laws."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.events.record import record
 from gearidae.engine.model.state import DRIVE, PHASE, Floats, Model, U, V, W
+from gearidae.engine.pairs.mesh_error import pinion_speed
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.laws.shaft.own import SHIFT, law_misfit, switch_value
 from gearidae.laws.shafts import guard, switch
@@ -39,8 +40,8 @@ def set_law_window(m: Model) -> None:
 
 @compiled
 def _speed(m: Model, shaft: int, y: Floats) -> float:
-    """Surface velocity of a shaft; the slope of the static error is left out."""
-    return y[V] + y[W] if shaft == DRIVE else y[W]
+    """Surface velocity of a shaft."""
+    return float(pinion_speed(m, y)[0]) if shaft == DRIVE else float(y[W])
 
 
 @compiled_once(SOLVER)

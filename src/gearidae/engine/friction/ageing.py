@@ -83,8 +83,10 @@ def _of_rises(m: Model, rises: tuple[float, float, float]) -> JointFriction:
 @compiled
 def joint_friction_rate(m: Model, t: float, y: Floats) -> JointFriction:
     """Rate of `joint_friction` along the motion; zero of joints that do not age."""
-    f, ages = m.scene.friction, _ages(m, t, y)
-    speeds = _ways(m, y)[1]
+    f = m.scene.friction
+    if f.ages == 0:
+        return JointFriction(0.0, 0.0, 0.0, 0.0, 0.0)
+    ages, speeds = _ages(m, t, y), _ways(m, y)[1]
     first = _rise_rate(m, PINION_HUB, ages[PINION_HUB], speeds[0])
     second = _rise_rate(m, GEAR_HUB, ages[GEAR_HUB], speeds[1])
     third = _rise_rate(m, PIN, ages[PIN], speeds[0])

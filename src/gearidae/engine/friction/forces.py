@@ -48,11 +48,15 @@ def has_gear_element(m: Model) -> bool:
     return bool(m.scene.dry != 0 or m.scene.friction.gear_rubs != 0)
 
 
-@compiled
+@compiled(inline=True)
 def dry_force(m: Model, t: float, y: Floats) -> float:
     """Dry resistance at the gear, over its base radius."""
-    if m.scene.dry == 0:
-        return 0.0
+    return _dry_force(m, t, y) if m.scene.dry != 0 else 0.0
+
+
+@compiled
+def _dry_force(m: Model, t: float, y: Floats) -> float:
+    """That of a gear that has one; not put into its callers, as most gears have none."""
     return max(driving_force(m, LOAD, t, torque_angle(m, LOAD, y[U], y[PHASE]), y[W]), 0.0)
 
 
@@ -250,7 +254,9 @@ def _gear_slip(m: Model) -> float:
 @compiled(inline=True)
 def with_acting(m: Model, t: float, y: Floats, gear: float) -> float:
     """Force at the gear with all that acts on its shaft but friction and the dry resistance."""
-    return acting(m, LOAD, t, torque_angle(m, LOAD, y[U], y[PHASE]), y[W], gear)
+    if m.scene.torque[LOAD].acts != 0:
+        gear = acting(m, LOAD, t, torque_angle(m, LOAD, y[U], y[PHASE]), y[W], gear)
+    return gear
 
 
 @compiled_once(FRICTION)

@@ -43,6 +43,6 @@ def correct(m: Model, t: float, cj: float, y: Floats, yp: Floats, delta: Floats)
     delta[W] = (v_v * right_w - w_v * right_v) * share
     delta[U] = (delta[V] - of_u) * step
     delta[PHASE] = (turning * delta[W] - of_phase) * step
-    own = s.by_pinion * s.slowing  # of the pinion, which is in its slope in v already
+    own = s.by_pinion * s.pinion_by_speed  # of the pinion, which is in its slope in v already
     slowing = 2.0 * (abs(s.pinion_v) + abs(s.gear_v) + abs(s.pinion_w - own) + abs(s.gear_w))
-    return abs(s.pinion_u) + abs(s.gear_u) + abs(s.gear_spring) + slowing * slowing
+    return abs(s.pinion_u) + abs(s.gear_u) + abs(s.gear_by_travel) + slowing * slowing

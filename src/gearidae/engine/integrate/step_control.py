@@ -31,8 +31,8 @@ import numpy as np
 
 from gearidae.compiled import compiled
 from gearidae.engine import adams
-from gearidae.engine.model.state import COAST, DRIVE, MOST_ORDERS, Floats, Model, Record, V, W
-from gearidae.engine.pairs.tooth_pairs import gap_and_rate, in_flight, nearest_gap, pair_at, pairs_touching
+from gearidae.engine.model.state import COAST, DRIVE, MOST_ORDERS, PHASE, Floats, Model, Record, U, V, W
+from gearidae.engine.pairs.tooth_pairs import in_flight, nearest_gap, rigid_separation
 from gearidae.engine.sundials import names as sun
 
 SAFETY: Final = 5.0  # E over e_k; the error of a run then is some tens of tolerances
@@ -88,18 +88,7 @@ def below_gap_bound(m: Model, a: Record) -> bool:
     bound, y = m.scene.lowest_gap - OVERSHOOT, a.new_state
     if min(nearest_gap(m, DRIVE, y), nearest_gap(m, COAST, y)) >= bound:
         return False
-    return m.scene.pitch_errors == 0 or _a_pair_is_below(m, y, bound)
-
-
-@compiled
-def _a_pair_is_below(m: Model, y: Floats, bound: float) -> bool:
-    """Whether the gap of a pair is below a bound: teeth that stand out farther than these may be elsewhere."""
-    reach = pairs_touching(m, y)
-    for k in range(reach.total):
-        coast, number = pair_at(reach, k)
-        if gap_and_rate(m, coast, number, y)[0] < bound:
-            return True
-    return False
+    return bool(rigid_separation(m, y[U], y[PHASE]) < bound)
 
 
 @compiled(inline=True)

@@ -38,8 +38,7 @@ COVERAGE: Final = record_type(  # of one side's flanks
 
 TORQUE: Final = record_type(  # of a shaft
     ("takes_angle", INT),  # 1 if a torque depends on the shaft's angle
-    ("acts", INT),  # 1 if a law acts on it besides its driving torque
-    ("sampled", INT),  # 1, 2, 4.. added up of the laws whose torques are sampled
+    ("acts", INT),  # 1, 2, 4.. added up of the laws that act on it besides its driving torque
     ("angle_unit", REAL),  # unit of the shaft's angle: sigma over the base radius [rad]
     *(field for law in SHAFT_LAWS for field in law.fields),
     *((constant.name, REAL) for law in SHAFT_LAWS for constant in law.coefficients),

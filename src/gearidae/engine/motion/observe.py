@@ -12,10 +12,10 @@ from gearidae.engine.compiling import SOLVER
 from gearidae.engine.elastic.rows import first_unknown
 from gearidae.engine.friction.ageing import coefficients
 from gearidae.engine.model.record_types import FREE
-from gearidae.engine.model.state import COAST, DRIVE, GEARS, LOAD, PHASE, Floats, Model, U, V, W
+from gearidae.engine.model.state import DRIVE, GEARS, LOAD, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
 from gearidae.engine.motion.shafts import friction_at_gear, resisting_force
-from gearidae.engine.pairs.mesh_error import error_at, turn_of
+from gearidae.engine.pairs.mesh_error import pinion_speed
 from gearidae.engine.pairs.shaft_angle import angle_of_shaft, torque_angle
 from gearidae.engine.pairs.tooth_pairs import (
     all_pairs,
@@ -23,7 +23,7 @@ from gearidae.engine.pairs.tooth_pairs import (
     history_of,
     pair_at,
     pair_gap,
-    pairs_along,
+    rigid_separation,
 )
 from gearidae.engine.population.forces import asperities_joined
 from gearidae.laws.shafts import driving_force, write_samples
@@ -59,8 +59,7 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
             row[ROLLER.min_separation] = separation(m, y) * length
         return
     phase, w = y[PHASE], y[W]
-    e = error_at(m, u, phase)
-    turn, radius = turn_of(e, v, w), m.scene.gear_radius
+    (turn, e), radius = pinion_speed(m, y), m.scene.gear_radius
     row[GEAR.gear_speed] = w * speed / radius
     row[GEAR.pinion_speed] = turn * speed / m.scene.pinion_radius
     row[GEAR.gear_angle] = angle_of_shaft(m, LOAD, u, phase)
@@ -136,17 +135,4 @@ def separation(m: Model, y: Floats) -> float:
         first = first_unknown(m, k)
         for node in range(m.scene.nodes):
             least = min(least, gap + m.tables[m.scene.profile_at + node] + y[first + node])
-    return least
-
-
-@compiled
-def rigid_separation(m: Model, u: float, phase: float) -> float:
-    """Distance of the nearer flank of pairs on the path of contact; with errors of teeth that of the nearest pair."""
-    if m.scene.pitch_errors == 0:
-        return min(m.scene.nearest[DRIVE] - u, m.scene.nearest[COAST] + u)
-    least = math.inf
-    reach = pairs_along(m, phase)
-    for i in range(reach.total):
-        coast, pair = pair_at(reach, i)
-        least = min(least, pair_gap(m, coast, pair, u, 0.0, phase, 0.0)[0])
     return least

@@ -55,7 +55,7 @@ def shafts_at(m: Model, t: float, y: Floats, mesh: MeshForces) -> Shafts:
     return Shafts(turn, drive - (1.0 - e.pinion) * force, (1.0 + e.gear) * force + mesh.relief, e)
 
 
-@compiled
+@compiled(inline=True)
 def resisting_force(m: Model, t: float, y: Floats) -> float:
     """What resists the gear over R2, scaled: what acts on its shaft, and dry resistance against its slip (Eq. 2)."""
     return m.state.slip * dry_force(m, t, y) - with_acting(m, t, y, -0.0)
@@ -84,9 +84,9 @@ class AccelerationSlopes(NamedTuple):
     ----------
     by_pinion, by_both, by_gear : float
         Inverse mass matrix of what is free to move: entries of the pinion, off the diagonal, and of the gear.
-    slowing : float
+    pinion_by_speed : float
         Slope in the pinion's own speed of the torque on it, which is in both its slopes.
-    gear_spring : float
+    gear_by_travel : float
         Slope of the gear's acceleration in its own travel, of the laws of its shaft, which is in that of the phase.
     """
 
@@ -101,8 +101,8 @@ class AccelerationSlopes(NamedTuple):
     by_pinion: float
     by_both: float
     by_gear: float
-    slowing: float
-    gear_spring: float
+    pinion_by_speed: float
+    gear_by_travel: float
 
 
 @compiled_once(FRICTION)
@@ -121,7 +121,7 @@ def note_limits(m: Model, t: float, y: Floats) -> None:
 def acceleration_slopes(m: Model, y: Floats, mesh: MeshForces) -> AccelerationSlopes:
     """Slopes of the accelerations, from those of the forces that `mesh_forces` has just summed.
 
-    The static error's own slopes are left out: it is small, and these only steer Newton's iteration. So are the slopes
+    The slopes of the mesh's error are left out: it is small, and these only steer Newton's iteration. So are the slopes
     of a torque in angle and speed where its law says none: a shaft takes many steps to follow a mild law, and each
     iteration reduces what is left by the ratio of a step to that time.
     """
@@ -143,8 +143,8 @@ def acceleration_slopes(m: Model, y: Floats, mesh: MeshForces) -> AccelerationSl
     turn, damping = y[V] + y[W], m.scene.damping
     pinion_u, pinion_phase = f.pinion_u - mesh.force_u, f.pinion_phase - mesh.force_phase
     angle = torque_angle(m, DRIVE, y[U], y[PHASE])
-    slowing = by_speed(m, DRIVE, angle, turn, -0.0)
-    pinion_v, pinion_w = slowing - (damping + mesh.force_v), slowing - mesh.force_w
+    own_speed = by_speed(m, DRIVE, angle, turn, -0.0)
+    pinion_v, pinion_w = own_speed - (damping + mesh.force_v), own_speed - mesh.force_w
     gear_u = f.gear_u + mesh.force_u + mesh.relief_u
     gear_phase = f.gear_phase + mesh.force_phase + mesh.relief_phase
     gear_v = damping + mesh.force_v + mesh.relief_v
@@ -154,10 +154,10 @@ def acceleration_slopes(m: Model, y: Floats, mesh: MeshForces) -> AccelerationSl
         pinion_phase += of_travel / m.scene.phase_rate
     angle = torque_angle(m, LOAD, y[U], y[PHASE])
     gear_w = by_speed(m, LOAD, angle, y[W], mesh.force_w + mesh.relief_w)
-    gear_spring = 0.0
+    own_travel = 0.0
     if m.scene.torque[LOAD].takes_angle != 0:
-        gear_spring = by_angle(m, LOAD, angle, y[W], -0.0) * m.scene.torque[LOAD].angle_unit
-        gear_phase += gear_spring / m.scene.phase_rate
+        own_travel = by_angle(m, LOAD, angle, y[W], -0.0) * m.scene.torque[LOAD].angle_unit
+        gear_phase += own_travel / m.scene.phase_rate
     a, b, c = f.by_pinion, f.by_both, f.by_gear
     return AccelerationSlopes(
         a * pinion_u + b * gear_u,
@@ -171,8 +171,8 @@ def acceleration_slopes(m: Model, y: Floats, mesh: MeshForces) -> AccelerationSl
         a,
         b,
         c,
-        slowing,
-        c * gear_spring,
+        own_speed,
+        c * own_travel,
     )
 
 
@@ -194,8 +194,8 @@ def forces_at_shafts(m: Model, t: float, y: Floats) -> tuple[float, float, float
 def friction_at_gear(m: Model, t: float, y: Floats) -> tuple[float, float, tuple[float, float, float]]:
     """Force of the flanks' friction on the gear, what resists it besides its hub, and the loads of hubs and pin.
 
-    Drags and dry resistance resist it. At rest, where the shares of several elements are not unique, the flanks'
-    friction is zero and the dry resistance takes what it can.
+    What acts on its shaft and dry resistance resist it. At rest, where the shares of several elements are not unique,
+    the flanks' friction is zero and the dry resistance takes what it can.
     """
     turn, pinion, gear = forces_at_shafts(m, t, y)
     shafts = solve_shafts(m, t, y, turn, pinion, gear)
@@ -207,7 +207,8 @@ def friction_at_gear(m: Model, t: float, y: Floats) -> tuple[float, float, tuple
         friction += direction(m, noted) * noted.limit * second
         if m.state.hold == HELD_PAIR and noted.history == m.state.held_pair:
             friction += shafts.held * second
-    if m.state.hold == AT_REST or m.state.hold == HELD_GEAR:  # without a speed, and so without drags
+    if m.state.hold == AT_REST or m.state.hold == HELD_GEAR:
         dry = dry_force(m, t, y)
-        return friction, min(max(gear + friction, -dry), dry), loads
+        held = min(max(gear + friction, -dry), dry)
+        return friction, held - with_acting(m, t, y, -0.0), loads
     return friction, resisting_force(m, t, y), loads

@@ -59,7 +59,7 @@ from gearidae.formulas.quadrature import (
     integral_of_square,
     torque_work,
 )
-from gearidae.laws.shafts import book_losses, driving_force, driving_rate, is_constant, stored
+from gearidae.laws.shafts import book_losses, driving_force, driving_rate, is_constant, stored_by_laws
 
 ORDER: Final = 4
 """Order of the quadrature."""
@@ -80,7 +80,7 @@ def _stored_in_shafts(m: Model, y: Floats) -> float:
     energy = 0.0
     for shaft in range(2):
         if m.scene.torque[shaft].acts != 0:
-            energy = stored(m, shaft, torque_angle(m, shaft, y[U], y[PHASE]), energy)
+            energy = stored_by_laws(m, shaft, torque_angle(m, shaft, y[U], y[PHASE]), energy)
     return energy
 
 
@@ -291,14 +291,16 @@ def _closes_interval(m: Model, h: float) -> bool:
 
 @compiled(inline=True)
 def _accumulate_losses(m: Model, t: float, y: Floats, yp: Floats) -> None:
-    """Add the losses by drag and mesh damping; both are cheap to evaluate and are integrated over every step."""
+    """Add the losses of laws of the shafts, of mesh damping and of films, over every step."""
     r = m.work.resistance
     h = t - r.time
     if h == 0.0:
         return
     gear, w, w_rate = y[PHASE] / m.scene.phase_rate, y[W], yp[W]
     e, turn = m.state.energy, Ends(r.gear_speed, r.gear_acceleration, w, w_rate)
-    taken = book_losses(m, LOAD, h, torque_angle(m, LOAD, y[U], y[PHASE]), gear - r.gear_travel, turn)
+    taken = 0.0
+    if m.scene.torque[LOAD].acts != 0:
+        taken = book_losses(m, LOAD, h, torque_angle(m, LOAD, y[U], y[PHASE]), gear - r.gear_travel, turn)
     if m.scene.torque[DRIVE].acts != 0:
         travel, speed, acceleration = _pinion(m, y, yp)
         ends = Ends(r.pinion_speed, r.pinion_acceleration, speed, acceleration)
@@ -321,7 +323,7 @@ def _accumulate_losses(m: Model, t: float, y: Floats, yp: Floats) -> None:
 
 @compiled(inline=True)
 def _note_resistance(m: Model, t: float, gear: float, y: Floats, yp: Floats) -> None:
-    """Note what the powers of drag and damping are made of, with the travels of gear and mesh."""
+    """Note travels, speeds and accelerations of gear and mesh, and of a pinion on which laws act."""
     r = m.work.resistance
     r.time, r.gear_travel = t, gear
     r.gear_speed, r.gear_acceleration = y[W], yp[W]
@@ -371,7 +373,7 @@ def _torque_slopes(m: Model, t: float, y: Floats) -> float:
     total = 0.0
     for shaft in range(2):
         if not is_constant(m, shaft):
-            speed = y[W] if shaft == LOAD else y[V] + y[W]
+            speed = y[W] if shaft == LOAD else speed_and_error(m, y)[0]
             angle = torque_angle(m, shaft, y[U], y[PHASE])
             faster = driving_force(m, shaft, t, angle, speed + 1.0)
             total += abs(faster - driving_force(m, shaft, t, angle, speed))

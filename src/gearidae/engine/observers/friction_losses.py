@@ -84,10 +84,8 @@ def note_friction(m: Model, t: float, y: Floats) -> None:
             )
         else:
             load_rate = _load_rate(m, shafts, Mesh(drive, coast, drive_friction, coast_friction), force_rate)
-        joints, joints_rate = joint_friction(m, t, y), JointFriction(0.0, 0.0, 0.0, 0.0, 0.0)
-        if m.scene.friction.ages != 0:
-            joints_rate = joint_friction_rate(m, t, y)
-        _note_joints(m, shafts, (joints, joints_rate), load_rate, force_rate, turn, y[W])
+        joints = joint_friction(m, t, y), joint_friction_rate(m, t, y)
+        _note_joints(m, shafts, joints, load_rate, force_rate, turn, y[W])
 
 
 @compiled

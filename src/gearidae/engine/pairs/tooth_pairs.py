@@ -280,6 +280,19 @@ def contact_length(m: Model, inside: float) -> float:
 
 
 @compiled
+def rigid_separation(m: Model, u: float, phase: float) -> float:
+    """Distance of the nearer flank of pairs on the path of contact; with errors of teeth that of the nearest pair."""
+    if m.scene.pitch_errors == 0:
+        return min(m.scene.nearest[DRIVE] - u, m.scene.nearest[COAST] + u)
+    least = math.inf
+    reach = pairs_along(m, phase)
+    for i in range(reach.total):
+        coast, pair = pair_at(reach, i)
+        least = min(least, pair_gap(m, coast, pair, u, 0.0, phase, 0.0)[0])
+    return least
+
+
+@compiled
 def nearest_gap(m: Model, coast: int, y: Floats) -> float:
     """Gap on the path of contact of the teeth that stand out farthest, which no pair of this flank undercuts."""
     return m.scene.nearest[coast] + (y[U] if coast else -y[U])

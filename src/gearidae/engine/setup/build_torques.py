@@ -12,7 +12,7 @@ from gearidae.laws.law import number_of
 from gearidae.laws.shaft.harmonic import common_period, pack_harmonics
 from gearidae.laws.shaft.own import largest_torque, law_knots
 from gearidae.laws.shaft.schedule import LEAST_CUBIC, fastest_schedule, pack_schedule, steep_knots
-from gearidae.laws.shafts import SAMPLED, SHAFT_LAWS, has_law, is_held, sampled_laws
+from gearidae.laws.shafts import ACTING, SHAFT_LAWS, has_law, is_held, sampled_laws
 from gearidae.scene import Drive, GearScene, Knots, Load, Scene
 from gearidae.torques import torque_law
 
@@ -84,11 +84,14 @@ def add_torques(s: Record, tables: Tables, scene: GearScene, begin: float) -> No
                     number_of(scene, shaft, constant.name) if of_gears else getattr(law, constant.name, 0.0)
                 )
                 torque[constant.name] = constant.scaled(value, radius, float(s.length_unit) / tau, force)
-                torque.acts |= int(not of_shaft.drives and value != 0.0)
             if has_law(scene, shaft, of_shaft):
                 s.guarded |= int(of_shaft.guard is not None)
                 torque.takes_angle |= int(of_shaft.by_angle is not None)
-        torque.sampled = sum(1 << k for k, of_shaft in enumerate(SAMPLED) if has_law(scene, shaft, of_shaft))
+        torque.acts = sum(
+            1 << k
+            for k, of_shaft in enumerate(ACTING)
+            if any(torque[constant.name] != 0.0 for constant in of_shaft.coefficients)
+        )
         torque.harmonic_count, torque.harmonics_at = len(harmonics), tables.add(waves[-1])
         torque.law_torque, torque.law_speed = unit, float(s.length_unit) / tau / radius
         torque.order_count, torque.orders_at = len(orders), tables.add([x for term in orders for x in term])

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from gearidae.compiled import compiled
 from gearidae.laws.law import DRIVE, SPEED, Coefficient, Range, ShaftLaw
-from gearidae.laws.shaft.schedule import schedule_rate, schedule_value, turns_within
+from gearidae.laws.shaft.schedule import range_of_schedule, schedule_rate, schedule_value, turns_within
 
 if TYPE_CHECKING:
     from gearidae.engine.model.state import Model
@@ -49,10 +49,7 @@ def _is_steady(m: Model, shaft: int, t: float, value: bool) -> bool:
 @compiled
 def _range(m: Model, shaft: int, t: float, to: float, value: Range) -> Range:
     gain = m.scene.torque[shaft].speed_gain
-    if gain == 0.0:
-        return value
-    change = gain * (schedule_value(m, SPEED, to, 0.0) - schedule_value(m, SPEED, t, 0.0))
-    return Range(value.moving, value.swing, value.low + min(change, 0.0), value.high + max(change, 0.0))
+    return value if gain == 0.0 else range_of_schedule(m, SPEED, t, to, gain, value)
 
 
 def _slowing(scene: Any, shaft: int, value: tuple[float, float]) -> tuple[float, float]:

@@ -241,7 +241,13 @@ def _is_steady(m: Model, shaft: int, t: float, value: bool) -> bool:
 
 @compiled
 def _range(m: Model, shaft: int, t: float, to: float, value: Range) -> Range:
-    change = schedule_value(m, shaft, to, 0.0) - schedule_value(m, shaft, t, 0.0)
+    return range_of_schedule(m, shaft, t, to, 1.0, value)
+
+
+@compiled
+def range_of_schedule(m: Model, which: int, t: float, to: float, factor: float, value: Range) -> Range:
+    """Add what a schedule changes, times a factor."""
+    change = factor * (schedule_value(m, which, to, 0.0) - schedule_value(m, which, t, 0.0))
     return Range(value.moving, value.swing, value.low + min(change, 0.0), value.high + max(change, 0.0))
 
 

@@ -35,13 +35,10 @@ def _side(m: Model, shaft: int, angle: float) -> int:
 
 @compiled
 def _in_touch(m: Model, shaft: int, angle: float) -> bool:
-    torque = m.scene.torque[shaft]
-    if torque.spring == 0.0 and torque.spring_damping == 0.0:
-        return False
-    return torque.spring_play == 0.0 or _side(m, shaft, angle) != 0
+    return bool(m.scene.torque[shaft].spring_play == 0.0 or _side(m, shaft, angle) != 0)
 
 
-@compiled(inline=True)
+@compiled
 def _force(m: Model, shaft: int, t: float, angle: float, speed: float, value: float) -> float:
     if _in_touch(m, shaft, angle):
         torque = m.scene.torque[shaft]
@@ -50,14 +47,14 @@ def _force(m: Model, shaft: int, t: float, angle: float, speed: float, value: fl
     return value
 
 
-@compiled(inline=True)
+@compiled
 def _by_speed(m: Model, shaft: int, angle: float, speed: float, value: float) -> float:
     if _in_touch(m, shaft, angle):
         value -= m.scene.torque[shaft].spring_damping
     return value
 
 
-@compiled(inline=True)
+@compiled
 def _by_angle(m: Model, shaft: int, angle: float, speed: float, value: float) -> float:
     if _in_touch(m, shaft, angle):
         value -= m.scene.torque[shaft].spring

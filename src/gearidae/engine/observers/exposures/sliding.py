@@ -20,7 +20,7 @@ import math
 from gearidae.compiled import compiled
 from gearidae.engine.model.state import Floats, Model, W
 from gearidae.engine.observers.exposures.bins import ROWS, bin_at, share_at_edge
-from gearidae.engine.pairs.mesh_error import pinion_speed
+from gearidae.engine.pairs.mesh_error import pinion_acceleration, pinion_speed
 from gearidae.formulas.interpolation import cubic, cubic_slope
 from gearidae.formulas.quadrature import error_estimate, integral
 
@@ -43,7 +43,8 @@ PER_PITCH = 100.0
 def sliding_speeds(m: Model, y: Floats, v_rate: float, w_rate: float) -> tuple[float, float, float]:
     """Sliding speed a pitch from the pitch point, its rate, and how fast a contact moves along the path."""
     s = m.scene
-    turn, turn_rate = pinion_speed(m, y)[0], v_rate + w_rate
+    turn, e = pinion_speed(m, y)
+    turn_rate = pinion_acceleration(e, turn, y[W], v_rate, w_rate)
     speed = s.sliding_pinion * turn + s.sliding_gear * y[W]
     return speed, s.sliding_pinion * turn_rate + s.sliding_gear * w_rate, s.phase_rate * y[W]
 

@@ -6,7 +6,7 @@ from gearidae.compiled import compiled
 from gearidae.contact.history import extreme_gap
 from gearidae.engine.model.checkpoint_record import WINDOWS
 from gearidae.engine.model.state import PHASE, Floats, Model, Record, U, V, W
-from gearidae.engine.motion.observe import rigid_separation, separation
+from gearidae.engine.motion.observe import separation
 from gearidae.engine.observers.extremes.forces import first_force, follow_force, force_of_motion, note_corner
 from gearidae.engine.observers.extremes.speeds import (
     come_to_stand,
@@ -17,6 +17,7 @@ from gearidae.engine.observers.extremes.speeds import (
     note_speed,
 )
 from gearidae.engine.observers.standing import follow as standing
+from gearidae.engine.pairs.tooth_pairs import rigid_separation
 
 
 @compiled(inline=True)
