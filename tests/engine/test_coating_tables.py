@@ -8,7 +8,7 @@ import pytest
 import gearidae as gd
 from balances import assert_closes
 from gearidae.engine import solve
-from gearidae.engine.energy.contacts import joining_losses
+from gearidae.engine.laws.pairs import joining_losses
 from gearidae.engine.pairs.coverage import loading_of, potential_of, potentials_of, share_changes, shares_of
 from gearidae.engine.pairs.lengths import weighed_length
 from gearidae.engine.setup.build import make_problem

@@ -5,8 +5,7 @@ import pytest
 
 import gearidae as gd
 from gearidae.engine import solve
-from gearidae.engine.energy.contacts import stored_energy
-from gearidae.engine.energy.radius import radius_power
+from gearidae.engine.laws.pairs import radius_power, stored_energy
 from gearidae.engine.model.state import PHASE, V, W
 from gearidae.engine.motion.static_solve import settle_nodes
 from gearidae.engine.setup.build import make_problem

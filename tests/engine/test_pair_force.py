@@ -6,9 +6,10 @@ import pytest
 from gearidae.engine.model.state import PHASE, U, V, W
 from gearidae.engine.motion.block_jacobian import assemble, store_size
 from gearidae.engine.motion.residual import jacobian, residual
-from gearidae.engine.pairs.pair_force import NO_MESH_FORCES, PairForce, add_pair
+from gearidae.engine.pairs.pair_force import NO_MESH_FORCES, add_pair
 from gearidae.engine.pairs.tooth_pairs import pair_state
 from gearidae.engine.setup.build import make_problem
+from gearidae.laws.pair_law import PairForce
 from gearidae.scene import preset
 
 HIGH = preset("teodorescu2009").replace({"contact.bodies": "rigid", "coating.sam_fraction": 0.5})

@@ -8,8 +8,8 @@ import pytest
 import gearidae as gd
 from gearidae.engine.backend import kept_at, solve
 from gearidae.engine.continuing import end_of
-from gearidae.engine.energy.contacts import stored_energy
 from gearidae.engine.events.asperity_events import asperity_guard
+from gearidae.engine.laws.pairs import stored_energy
 from gearidae.engine.motion.pair_forces import mesh_forces
 from gearidae.engine.setup.build import make_problem
 from gearidae.errors import SceneError

@@ -18,10 +18,10 @@ from gearidae.engine.events.asperity_events import (
 )
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.record import EVENT_NUMBERS
+from gearidae.engine.laws.discrete import asperity_force
 from gearidae.engine.model.state import EMPTY
 from gearidae.engine.motion.pair_forces import mesh_forces
 from gearidae.engine.population.contact_point import pair_now
-from gearidae.engine.population.forces import asperity_force
 from gearidae.engine.setup.build import make_problem
 from gearidae.engine.setup.problem import Problem
 from gearidae.scene import preset

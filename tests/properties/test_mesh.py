@@ -10,13 +10,12 @@ from gearidae.engine.events.histories import begin
 from gearidae.engine.motion.pair_forces import mesh_forces
 from gearidae.engine.motion.residual import jacobian, residual
 from gearidae.engine.pairs.coverage import WHOLE
+from gearidae.engine.laws.statistical import pair_force, set_joined
 from gearidae.engine.pairs.tooth_pairs import (
     all_pairs,
     history_of,
     pair_at,
-    pair_force,
     pair_gap,
-    set_joined,
 )
 from gearidae.engine.setup.build import make_problem
 

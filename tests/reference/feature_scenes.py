@@ -6,6 +6,7 @@ import numpy as np
 
 import gearidae as gd
 from gearidae.laws.law import SHAFT_NAMES
+from gearidae.laws.pairs import MESH_LAWS
 from gearidae.laws.shafts import SHAFT_LAWS
 
 __all__ = ["CHANGES", "HALF", "SAMPLES", "scene_with"]
@@ -80,8 +81,10 @@ CHANGES = {
         "mesh.pinion_runout": {"amplitude": 2e-8, "phase": 0.5},
         "mesh.gear_runout": {"amplitude": 6e-8, "phase": -1.0},
     },
-    "mesh damping": {"mesh.damping": 7e-6},
-    "film of gas": {"mesh.film_damping": 2e-5, "mesh.film_gap": 2e-8},
+    **{
+        law.name: {f"mesh.{constant.name}": constant.key.example for constant in law.constants}
+        for law in MESH_LAWS
+    },
     "held speed": {"drive.speed": 11592.0, "drive.speed_gain": 1e-15},
     "exposures": {"run.exposures": 4},
     **{

@@ -9,11 +9,11 @@ import numpy as np
 from gearidae.engine.elastic.histories import accumulate_points, init_nodes
 from gearidae.engine.elastic.rows import GAP, JOINED, SHARE, first_unknown, point_gaps, profile_of, row_of
 from gearidae.engine.events.sliding import settle_start
+from gearidae.engine.laws.statistical import set_all_branches, set_joined
 from gearidae.engine.model.state import EMPTY, MATERIALS, Floats, Model, assign
 from gearidae.engine.motion.static_solve import SETTLED, settle_nodes
 from gearidae.engine.observers.balance import carry_balance
 from gearidae.engine.observers.exposures.bins import exposure_table
-from gearidae.engine.pairs.tooth_pairs import set_all_branches, set_joined
 from gearidae.engine.setup.problem import Problem
 
 _ROUNDS = 20  # each brings the deflections ten times nearer to those of what is joined, or more

@@ -25,11 +25,11 @@ from gearidae.engine.changeover import (
     remember,
     take_over,
 )
-from gearidae.engine.energy.contacts import stored_energy
 from gearidae.engine.events.asperity_events import join_at_start
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.sliding import begin_sliding, settle_start
 from gearidae.engine.integrate.start import rebase
+from gearidae.engine.laws.pairs import stored_energy
 from gearidae.engine.model.record_types import FREE
 from gearidae.engine.model.state import (
     EMPTY,

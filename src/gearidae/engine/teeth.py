@@ -33,6 +33,7 @@ from gearidae.engine.population.layout import (
 )
 from gearidae.engine.setup.problem import Problem
 from gearidae.engine.setup.start import AT_ONCE, Start
+from gearidae.laws.pair_law import in_reach
 from gearidae.mesh.involute import curvature_radii
 from gearidae.records import Flank, sample_times
 from gearidae.records.tooth_states import ContactState, MeshState, ToothContact
@@ -133,7 +134,7 @@ class _Reader:
             coast, number = pair_at(reach, i)
             along = float(m.scene.coast_phase + number - y[PHASE] if coast else y[PHASE] - number)
             gap, rate = pair_gap(m, coast, number, y[U], y[V], y[PHASE], y[W])[:2]
-            if not 0.0 <= along <= m.scene.contact_ratio and gap >= m.scene.cutoff:
+            if not 0.0 <= along <= m.scene.contact_ratio and not in_reach(m, gap):
                 continue
             asperities: tuple[int, ...] | None = None
             joined: dict[str, float] = {}

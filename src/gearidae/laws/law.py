@@ -52,7 +52,7 @@ class Range(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class Key:
-    """A key of either shaft in the table of the gears, from 0 to a bound, 0 by default: ``gears.gear_NAME``.
+    """A key of a law, from 0 to a bound, 0 by default: of either shaft ``gears.gear_NAME``, of a mesh ``mesh.NAME``.
 
     Attributes
     ----------
@@ -60,17 +60,22 @@ class Key:
         SI unit in pint's spelling.
     description : str
         What it means; ``{shaft}`` stands for the shaft's name.
-    at_most, least : float
-        Largest number, and smallest that is not 0.
+    at_most : float
+        Largest number.
     example : float
         Of a polysilicon microgear, for the tests of laws against each other.
+    least : float, optional
+        Smallest number that is not 0.
+    shown : tuple of (str, int), optional
+        Unit in which a case file shows it, and the power of ten that this unit is.
     """
 
     unit: str = field(kw_only=False)
     description: str = field(kw_only=False)
     at_most: float
-    least: float
     example: float
+    least: float | None = None
+    shown: tuple[str, int] | None = None
 
 
 @dataclass(frozen=True)
@@ -121,10 +126,13 @@ class Loss(NamedTuple):
     ----------
     name, meaning : str
         Also in an archive.
+    since : str
+        Version that began to archive it.
     """
 
     name: str
     meaning: str
+    since: str = "0.3"
 
 
 class Sample(NamedTuple):

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Final
 
+from gearidae.laws.pairs import MESH_LAWS
 from gearidae.laws.shafts import SHAFT_LAWS
 from gearidae.records.quantity import ENERGY, Quantity, Totals, Unit
 
@@ -28,9 +29,12 @@ ENERGY_SUMS: Final = (
     ),
     _loss("drag_loss", "energy lost to drag", archive=True, group="useful"),
     _loss("dry_loss", "energy lost to dry resistance", archive=True, group="useful"),
-    _loss("damping_loss", "energy lost to the mesh's viscous damping", archive=True),
-    _loss("film_loss", "energy lost to films of gas between flanks", archive=True, since="0.3"),
-    *(_loss(loss.name, loss.meaning, archive=True, since="0.3") for law in SHAFT_LAWS for loss in law.losses),
+    *(
+        _loss(loss.name, loss.meaning, archive=True, since=loss.since)
+        for laws in (MESH_LAWS, SHAFT_LAWS)
+        for law in laws
+        for loss in law.losses
+    ),
     _loss("adhesion_loss", "energy lost to adhesion", archive=True),
     _loss(
         "flank_loss",

@@ -6,6 +6,7 @@ import logging
 import math
 from typing import TYPE_CHECKING, Final
 
+from gearidae.laws.pairs import MESH_LAWS, has_mesh_law, number_of_mesh
 from gearidae.scene import TrainScene
 from gearidae.scene.joints import joints
 from gearidae.scene.prefixes import with_prefix
@@ -170,10 +171,19 @@ def _idle(scene: Scene) -> list[str]:
             if load > 0.0:
                 words = "has no effect without gears.hub_friction"
                 lines.append(f"gears.{key} = {with_prefix(load, 'N')} {words}")
-    if scene.mesh.film_gap > 0.0 and scene.mesh.film_damping == 0.0:
-        words = "has no effect without mesh.film_damping"
-        lines.append(f"mesh.film_gap = {with_prefix(scene.mesh.film_gap, 'm')} {words}")
-    return lines
+    return lines + _idle_laws(scene)
+
+
+def _idle_laws(scene: Scene) -> list[str]:
+    """Name keys of laws of the mesh that the scene does not have."""
+    return [
+        f"mesh.{constant.name} = {with_prefix(number, constant.key.unit)} has no effect without "
+        f"mesh.{law.constants[0].name}"
+        for law in MESH_LAWS
+        if not has_mesh_law(scene, law)
+        for constant in law.constants
+        if (number := number_of_mesh(scene, constant.name)) > 0.0
+    ]
 
 
 def _idle_ageing(scene: Scene) -> list[str]:

@@ -7,11 +7,13 @@ elastic follows from the same list.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from itertools import combinations as pairs_of
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from gearidae.errors import SceneError
 from gearidae.laws.law import DRIVE, LOAD, SHAFT_NAMES, ShaftLaw
+from gearidae.laws.pairs import MESH_LAWS, has_mesh_law
 from gearidae.laws.shafts import SHAFT_LAWS, has_law
 from gearidae.scene.friction import has_flank_friction
 from gearidae.scene.joints import joints
@@ -86,12 +88,10 @@ FEATURES: Final = {
         "mesh.gear_runout",
         lambda scene: scene.mesh is not None and bool(scene.mesh.pinion_runout or scene.mesh.gear_runout),
     ),
-    "mesh damping": Feature(
-        "mesh.damping", lambda scene: scene.mesh is not None and scene.mesh.damping > 0.0
-    ),
-    "film of gas": Feature(
-        "mesh.film_damping", lambda scene: scene.mesh is not None and scene.mesh.film_damping > 0.0
-    ),
+    **{
+        law.name: Feature(f"mesh.{law.constants[0].name}", partial(has_mesh_law, law=law))
+        for law in MESH_LAWS
+    },
     "held speed": Feature("drive.speed", lambda scene: scene.drive is not None and bool(scene.drive.speed)),
     "exposures": Feature("run.exposures", lambda scene: scene.run.exposures > 0),
     **{law.name: _of_law(law) for law in SHAFT_LAWS if any(constant.key for constant in law.coefficients)},

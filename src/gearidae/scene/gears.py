@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 from pydantic import Field, create_model, model_validator
 
 from gearidae.errors import SceneError
-from gearidae.laws.law import SHAFT_NAMES
+from gearidae.laws.law import SHAFT_NAMES, Key
+from gearidae.laws.pairs import MESH_LAWS
 from gearidae.laws.shafts import SHAFT_LAWS
 from gearidae.scene.group import Group, shorten
 from gearidae.scene.pitch_errors import PitchErrors
@@ -38,13 +39,16 @@ def disc_inertia(density: float, width: float, base_radius: float, pressure_angl
     return 0.5 * math.pi * density * width * (base_radius / math.cos(pressure_angle)) ** 4
 
 
+def _key_of_law(key: Key, description: str) -> tuple[Any, Any]:
+    """Field of a table for a key of a law."""
+    kind = Quantity(unit=key.unit, at_least=0, at_most=key.at_most, least=key.least, shown=key.shown)
+    return Annotated[float, kind], Field(default=0.0, description=description)
+
+
 def _keys_of_laws() -> dict[str, Any]:
     """Keys of the laws of a shaft, of either shaft."""
     return {
-        f"{shaft}_{constant.name}": (
-            Annotated[float, Quantity(unit=key.unit, at_least=0, at_most=key.at_most, least=key.least)],
-            Field(default=0.0, description=key.description.format(shaft=shaft)),
-        )
+        f"{shaft}_{constant.name}": _key_of_law(key, key.description.format(shaft=shaft))
         for law in SHAFT_LAWS
         for constant in law.coefficients
         if (key := constant.key) is not None
@@ -196,26 +200,14 @@ class Runout(Group):
     )
 
 
-class Mesh(Group):
-    """How the teeth meet along the line of action."""
+class MeshOfTeeth(Group):
+    """How the teeth meet along the line of action: the keys of ``mesh`` that are of no law of a mesh."""
 
     backlash: Annotated[float, Quantity(unit="m", at_least=0, at_most=1, shown=("um", -6))] = Field(
         description="total play between the flanks, 2b, from the summits' mean plane"
     )
     tip_relief_radius: Annotated[float, Quantity(unit="m", at_least=1e-10, at_most=1, shown=("um", -6))] = (
         Field(default=10e-6, description="radius of the rounded tooth end, rho")
-    )
-    damping: Annotated[float, Quantity(unit="N s/m", at_least=0, at_most=1e9)] = Field(
-        default=0.0, description="viscous damping of the transmission error; it acts without contact, too"
-    )
-    film_damping: Annotated[float, Quantity(unit="N s/m", at_least=0, at_most=1e9)] = Field(
-        default=0.0, description="damping of a film of gas between two flanks, at a gap of zero"
-    )
-    film_gap: Annotated[float, Quantity(unit="m", at_least=0, at_most=1, least=1e-10, shown=("nm", -9))] = (
-        Field(
-            default=0.0,
-            description="height of that film; the damping falls with the third power of height and gap together",
-        )
     )
     static_error: Annotated[tuple[StaticErrorHarmonic, ...], one_or_more("order, amplitude, phase")] = Field(
         default=(), description="harmonics of the static transmission error, a list of tables"
@@ -259,8 +251,28 @@ class Mesh(Group):
         Field(default=None, description="width of the teeth of a train along the axis")
     )
 
+
+if TYPE_CHECKING:
+    _MeshWithLaws = MeshOfTeeth
+else:
+    _MeshWithLaws = create_model(
+        "_MeshWithLaws",
+        __base__=MeshOfTeeth,
+        __module__=__name__,
+        **{
+            constant.name: _key_of_law(constant.key, constant.key.description)
+            for law in MESH_LAWS
+            for constant in law.constants
+        },
+    )
+
+
+class Mesh(_MeshWithLaws):
+    """How the teeth meet along the line of action, with the keys that laws of a mesh declare."""
+
     @model_validator(mode="after")
-    def _film_has_a_height(self) -> Mesh:
-        if self.film_damping > 0.0 and self.film_gap == 0.0:
-            raise SceneError("film_gap", self.film_gap, "must be above 0 where film_damping is")
+    def _keys_go_together(self) -> Mesh:
+        for law in MESH_LAWS:
+            if law.refuse is not None:
+                law.refuse(self)
         return self

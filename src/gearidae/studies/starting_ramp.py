@@ -15,6 +15,7 @@ import numpy as np
 from gearidae.archive.dataset import reached
 from gearidae.asperities.tip import asperity_of
 from gearidae.errors import SolverError
+from gearidae.laws.pairs import number_of_mesh
 from gearidae.mesh.pair_contact import asperity_stiffness
 from gearidae.populations.first_touch import first_touch
 from gearidae.runs.estimates import effective_mass
@@ -95,7 +96,7 @@ def least_damping(scene: GearScene) -> float:
     The stiffness is `asperity_stiffness`.
     """
     critical = 2.0 * math.sqrt(asperity_stiffness(scene) * effective_mass(scene))
-    return max(scene.mesh.damping, DAMPING * critical)
+    return max(number_of_mesh(scene, "damping"), DAMPING * critical)
 
 
 def seated(scene: GearScene, seed: int) -> GearScene:

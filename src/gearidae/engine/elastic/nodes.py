@@ -69,6 +69,7 @@ from gearidae.engine.elastic.rows import (
 from gearidae.engine.model.state import EMPTY, MATERIALS, Floats, Model
 from gearidae.engine.pairs.coverage import Shares, loading_of, noted_shares
 from gearidae.engine.pairs.tooth_pairs import contact_length
+from gearidae.laws.pair_law import in_reach
 
 _CLOSING, _OPENING, _TURNED = 0, 1, 2
 _BEGUN = 1e-9  # roughnesses of stretch
@@ -351,6 +352,6 @@ def node_rates(m: Model, yp: Floats) -> None:
     """Rates of the deflections at an accepted time, from the nodes' shares in the last motion."""
     for k in range(m.scene.histories):
         first, share, h = first_unknown(m, k), row(m, k, SHARE), m.state.history[k]
-        near = h.pair != EMPTY and h.gap < m.scene.cutoff
+        near = h.pair != EMPTY and in_reach(m, h.gap)
         for i in range(m.scene.nodes):
             yp[first + i] = (share[i] - 1.0) * h.gap_rate if near else 0.0

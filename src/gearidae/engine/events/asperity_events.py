@@ -14,11 +14,11 @@ from typing import Final
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import POPULATION
 from gearidae.engine.events.record import EVENTS_AT_ONCE, record, record_asperity, record_contact
+from gearidae.engine.laws.discrete import candidate_energy
 from gearidae.engine.model.state import Floats, Model
 from gearidae.engine.pairs.tooth_pairs import PairState, flank_of_history, list_known
 from gearidae.engine.population.candidates import choose, covers, list_joined
 from gearidae.engine.population.contact_point import overlap_slopes, pair_of, spot_at
-from gearidae.engine.population.forces import candidate_energy
 from gearidae.engine.population.layout import (
     ARC,
     BOUND,

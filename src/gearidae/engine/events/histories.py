@@ -10,6 +10,7 @@ from gearidae.engine.elastic.nodes import middle_gap
 from gearidae.engine.events.asperity_events import join_at_start
 from gearidae.engine.events.mesh_marks import set_marks
 from gearidae.engine.events.sliding import begin_sliding
+from gearidae.engine.laws.statistical import set_joined
 from gearidae.engine.model.state import EMPTY, MATERIALS, PHASE, Floats, Model
 from gearidae.engine.pairs.tooth_pairs import (
     gap_and_rate,
@@ -17,9 +18,9 @@ from gearidae.engine.pairs.tooth_pairs import (
     nearest_gap,
     pair_at,
     pairs_touching,
-    set_joined,
 )
 from gearidae.engine.population.candidates import forget
+from gearidae.laws.pair_law import in_reach
 
 
 @compiled(inline=True)
@@ -27,7 +28,7 @@ def accept(m: Model, t: float, y: Floats) -> None:
     """Follow the histories to an accepted time; beyond the cut-off nothing is joined and nothing is remembered."""
     m.state.time = t
     for coast in range(2):
-        if nearest_gap(m, coast, y) < m.scene.cutoff:
+        if in_reach(m, nearest_gap(m, coast, y)):
             m.state.flank_in_reach[coast] = 1
         elif m.state.flank_in_reach[coast] != 0:
             clear_history(m, coast)
@@ -37,7 +38,7 @@ def accept(m: Model, t: float, y: Floats) -> None:
         k = history_of(m, coast, pair)
         h = m.state.history[k]
         gap, rate = gap_and_rate(m, coast, pair, y)
-        if h.pair != pair or gap >= m.scene.cutoff:
+        if h.pair != pair or not in_reach(m, gap):
             init_history(m, k, pair, gap, middle_gap(m, k, y, gap))
             if m.scene.nodes > 0:
                 init_nodes(m, k, y, gap)
@@ -75,7 +76,7 @@ def init_history(m: Model, k: int, pair: int, gap: float, middle: float) -> None
                 set_joined(m, k, material, middle)
     for material in range(MATERIALS):
         h.joined[material] = middle  # beyond the cut-off its branch does not matter
-        if gap >= m.scene.cutoff:
+        if not in_reach(m, gap):
             h.adhered_energy[material] = 0.0
         h.at_pull_off[material] = 0
     h.direction = h.lag = h.lag_power = h.lag_rate = 0.0

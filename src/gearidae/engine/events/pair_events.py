@@ -12,8 +12,10 @@ from gearidae.contact.history import joined_height
 from gearidae.engine.elastic.histories import join_nodes
 from gearidae.engine.elastic.nodes import middle_gap
 from gearidae.engine.events.record import record, record_contact
+from gearidae.engine.laws.statistical import set_joined
 from gearidae.engine.model.state import MATERIALS, Floats, Model
-from gearidae.engine.pairs.tooth_pairs import gap_and_rate, set_joined
+from gearidae.engine.pairs.tooth_pairs import gap_and_rate
+from gearidae.laws.pair_law import in_reach
 from gearidae.records import EventKind
 
 _ONSET: Final = float(EventKind.ONSET)
@@ -29,7 +31,7 @@ def pair_guard(m: Model, k: int, gap: float, rate: float, middle: float) -> floa
     h = m.state.history[k]
     touch = gap - m.scene.contact_gap
     least = -touch if h.in_contact != 0 else touch
-    if gap >= m.scene.cutoff:
+    if not in_reach(m, gap):
         return least
     if h.direction != 0.0:
         least = min(least, rate * h.direction)
@@ -72,7 +74,7 @@ def find_event(m: Model, y: Floats, coast: int, pair: int, k: int) -> PairEvent:
     h = m.state.history[k]
     inside = gap <= m.scene.contact_gap if h.in_contact == 0 else gap < m.scene.contact_gap
     touches, stretches, turns, middle = inside != (h.in_contact != 0), False, False, gap
-    if gap < m.scene.cutoff:
+    if in_reach(m, gap):
         middle = middle_gap(m, k, y, gap)
         for material in range(MATERIALS):
             stretches |= newly_stretched(m, k, material, middle)

@@ -10,14 +10,12 @@ from __future__ import annotations
 
 from typing import Final
 
-from gearidae.compiled import compiled, compiled_once
-from gearidae.contact.history import extreme_gap, joined_height
-from gearidae.contact.kernels.law import stretched_value
-from gearidae.engine.compiling import FRICTION
+from gearidae.compiled import compiled
+from gearidae.engine.laws.statistical import limit_of_materials
 from gearidae.engine.model.record_types import STUCK
-from gearidae.engine.model.state import COAST, MATERIALS, Model, Record
-from gearidae.engine.pairs.coverage import limit_of_loading, rubs_by_material, shares_of
-from gearidae.engine.pairs.tooth_pairs import contact_length, flank_of_history
+from gearidae.engine.model.state import COAST, Model, Record
+from gearidae.engine.pairs.coverage import rubs_by_material
+from gearidae.engine.pairs.tooth_pairs import flank_of_history
 
 RUBS: Final = 1e-8
 """Of the reference load: friction with a smaller limit is none, and has no direction to watch."""
@@ -73,7 +71,7 @@ def set_limits(m: Model, t: float, w: float) -> None:
                 friction.even * noted.contact_slope,
             )
         elif m.scene.nodes == 0:
-            noted.limit, noted.limit_slope = _limit_of_materials(m, t, i)
+            noted.limit, noted.limit_slope = limit_of_materials(m, t, i)
         noted.limit_rate = noted.limit_slope * noted.gap_rate + longer * noted.limit
 
 
@@ -86,35 +84,3 @@ def _length_rate(m: Model, noted: Record, w: float) -> float:
     bend = radius * m.scene.sum_curvature
     rate = 0.5 * (1.0 - 2.0 * bend) / (radius * (1.0 - bend)) * m.scene.phase_rate * w
     return -rate if flank_of_history(m, noted.history) == COAST else rate
-
-
-@compiled_once(FRICTION)
-def _limit_of_materials(m: Model, t: float, i: int) -> tuple[float, float]:
-    """Limit of the i-th pair of the notes and its slope in the gap, as its force is computed, with other laws."""
-    noted = m.work.pair_forces.pair[i]
-    friction, k, gap = m.scene.friction, noted.history, noted.gap
-    h = m.state.history[k]
-    shares = shares_of(m, flank_of_history(m, k), noted.pair, noted.position)
-    limit, slope = limit_of_loading(m, gap, shares)
-    if h.pair == noted.pair:
-        turned = h.direction * noted.gap_rate < 0.0
-        turning_gap = gap
-        if turned:
-            turning_gap = extreme_gap(t - m.state.time, h.gap, h.gap_rate, gap, noted.gap_rate)
-        for material in range(MATERIALS):
-            stretch_limit, offset = (
-                m.scene.material[material].stretch_limit,
-                m.scene.material[material].gap_offset,
-            )
-            if stretch_limit == 0.0 or friction.scale[material] == 0.0:
-                continue
-            joined = h.joined[material]
-            if turned:
-                joined = joined_height(joined, turning_gap, stretch_limit)
-            if gap > joined:
-                table = m.tables[friction.table_at[material] :]
-                q, dq = stretched_value(table, gap + offset, joined + offset)
-                limit += friction.scale[material] * shares[material] * q
-                slope += friction.scale[material] * shares[material] * dq
-    length = contact_length(m, noted.position)
-    return limit * length, slope * length

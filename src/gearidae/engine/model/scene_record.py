@@ -15,8 +15,8 @@ from gearidae.engine.model.record_types import (
     SCHEDULES,
     record_type,
 )
+from gearidae.laws.pairs import MESH_LAWS
 from gearidae.laws.shafts import SHAFT_LAWS
-from gearidae.records.quantity import LENGTH, Unit
 
 MATERIAL: Final = record_type(
     ("force_scale", REAL),  # force per sqrt(radius / pb), with the material's share of the surface [F]
@@ -134,13 +134,8 @@ FOLLOW: Final = record_type(  # 1 for each observer of the run that is wanted
     ("gear", INT),  # extremes of the gear's speed, and where it stands
 )
 
-_PER_SPEED: Final = Unit("F tau/sigma", "N s m-1", force=1, length=-1, time=1)
-KEYED: Final = {
-    "damping": ("mesh.damping", _PER_SPEED),
-    "film_damping": ("mesh.film_damping", _PER_SPEED),
-    "film_gap": ("mesh.film_gap", LENGTH),
-}
-"""Fields with the number of a key of the scene in the units of the run, and these units; 0 for a roller."""
+MESH_CONSTANTS: Final = tuple(constant for law in MESH_LAWS for constant in law.constants)
+"""Fields with the number of a key of the mesh in the units of the run; 0 for a roller."""
 
 SCENE: Final = record_type(
     ("follow", FOLLOW),
@@ -166,7 +161,8 @@ SCENE: Final = record_type(
     ("start_radius", REAL),  # pinion's radius of curvature where contact begins [pb]
     ("sum_curvature", REAL),  # 1 over the sum of both radii of curvature [1/pb]
     ("curvature_force", INT),  # 1 if a force pays for the changing contact length
-    *((name, REAL) for name in KEYED),
+    ("pair_laws", INT),  # 1, 2, 4.. added up of the laws of its pairs, see `gearidae.engine.laws.pairs`
+    *((constant.name, REAL) for constant in MESH_CONSTANTS),
     ("dry", INT),  # 1 if there is dry resistance at the gear
     ("error_count", INT),  # harmonics of the pinion's angle: static error and its own runout [1]
     ("error_at", INT),  # order, amplitude and phase of each, among the tables [index]

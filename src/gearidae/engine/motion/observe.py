@@ -11,6 +11,8 @@ from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.elastic.rows import first_unknown
 from gearidae.engine.friction.ageing import coefficients
+from gearidae.engine.laws.discrete import asperities_joined
+from gearidae.engine.laws.pairs import mesh_force
 from gearidae.engine.model.record_types import FREE
 from gearidae.engine.model.state import DRIVE, GEARS, LOAD, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
@@ -25,7 +27,7 @@ from gearidae.engine.pairs.tooth_pairs import (
     pair_gap,
     rigid_separation,
 )
-from gearidae.engine.population.forces import asperities_joined
+from gearidae.laws.pair_law import in_reach
 from gearidae.laws.shafts import driving_force, write_samples
 from gearidae.records.columns import GEAR, GEAR_POPULATION, ROLLER, ROLLER_POPULATION
 
@@ -48,7 +50,7 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
     length, speed = m.scene.length_unit, m.scene.length_unit / m.scene.time_unit
     u, v = y[U], y[V]
     mesh = forces_at(m, t, y)
-    force = mesh.force + m.scene.damping * v
+    force = mesh_force(m, v, mesh.force)
     if m.scene.kind != GEARS:
         row[ROLLER.height] = -u * length
         row[ROLLER.speed] = -v * speed
@@ -129,7 +131,7 @@ def separation(m: Model, y: Floats) -> float:
         coast, pair = pair_at(reach, i)
         k = history_of(m, coast, pair)
         gap, _ = gap_and_rate(m, coast, pair, y)
-        if gap >= m.scene.cutoff or m.state.history[k].pair != pair:
+        if not in_reach(m, gap) or m.state.history[k].pair != pair:
             least = min(least, gap)
             continue
         first = first_unknown(m, k)

@@ -1,98 +1,35 @@
-"""Forces of all pairs at a state: the one walk over the pairs that sums them, whatever law they have.
-
-Laws are additive. The asperities of a pair have one of three: that of many surfaces on average
-(`gearidae.engine.pairs.tooth_pairs.pair_force`), the nodes of elastic bodies (`gearidae.engine.elastic`), or asperities
-one by one (`gearidae.engine.population.forces`). The curvature of the flanks, their attraction and the film of gas
-between them are added to it.
-"""
+"""Forces of all pairs at a state: the one walk over the pairs that sums them, whatever laws they have."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from gearidae.compiled import compiled, compiled_once
-from gearidae.engine.compiling import ELASTIC, FRICTION, SOLVER
+from gearidae.engine.compiling import FRICTION, SOLVER
 from gearidae.engine.elastic.limits import limit_of_nodes
-from gearidae.engine.elastic.nodes import node_force
-from gearidae.engine.elastic.rows import TANGENT, first_unknown, row
+from gearidae.engine.elastic.rows import first_unknown
 from gearidae.engine.elastic.static_condensation import (
     FINISH,
     PREDICT,
     SETTLE,
-    condense_pair,
     following_slope,
     pair_deflections,
 )
-from gearidae.engine.energy.radius import curvature_force
+from gearidae.engine.laws.pairs import force_of_pair
 from gearidae.engine.model.state import Floats, Model
-from gearidae.engine.pairs.attraction_force import attraction_force
-from gearidae.engine.pairs.coverage import note_shares, rubs_by_material, shares_of
-from gearidae.engine.pairs.pair_force import (
-    NO_MESH_FORCES,
-    MeshForces,
-    PairForce,
-    add_pair,
-    both_forces,
-    of_contact,
-)
-from gearidae.engine.pairs.squeeze_film import film_force
+from gearidae.engine.pairs.coverage import note_shares, rubs_by_material
+from gearidae.engine.pairs.pair_force import NO_MESH_FORCES, MeshForces, add_pair
 from gearidae.engine.pairs.tooth_pairs import (
     PairState,
-    acts,
     contact_length,
     flank_of_history,
     pair_at,
-    pair_force,
     pair_state,
     pairs_felt,
     pairs_touching,
 )
 from gearidae.engine.population.contact_point import state_of_pair
-from gearidae.engine.population.forces import asperity_force
-
-
-@compiled(inline=True)
-def contact_force(m: Model, t: float, y: Floats, pair: PairState, settling: bool) -> PairForce:
-    """Force of the asperities of a pair; `settling` as for `mesh_forces`."""
-    if m.scene.population.flanks != 0:
-        return asperity_force(m, pair)
-    if m.scene.nodes == 0:
-        shares = shares_of(m, pair.coast, pair.number, pair.place)
-        load, slope = pair_force(m, pair.k, pair.known, t, pair.gap, pair.rate, pair.place, shares)
-        return of_contact(load, slope)
-    note_shares(m, pair.k, pair.coast, pair.number, pair.place)
-    length = contact_length(m, pair.place)
-    if settling:
-        load, slope = condense_pair(m, pair.k, pair.known, t, y, pair.gap, pair.rate, length)
-    else:
-        load, slope = node_force(m, pair.k, pair.known, t, y, pair.gap, pair.rate, length)
-    force = of_contact(load, slope)
-    return _with_limit(m, t, y, pair, length, settling, force) if rubs_by_material(m) else force
-
-
-@compiled_once(ELASTIC, makes_arrays=True)
-def _with_limit(
-    m: Model, t: float, y: Floats, pair: PairState, length: float, settling: bool, f: PairForce
-) -> PairForce:
-    """Return the force of an elastic pair with the limit of its friction, of materials with different coefficients."""
-    follow = row(m, pair.k, TANGENT) if settling else np.zeros(m.scene.nodes)
-    limit, slope = limit_of_nodes(m, t, y, pair, length, follow)
-    return PairForce(
-        f.load, f.by_gap, 0.0, 0.0, f.contact, f.contact_by_gap, 0.0, 0.0, 0.0, limit, slope, 0.0
-    )
-
-
-@compiled(inline=True)
-def force_of_pair(m: Model, t: float, y: Floats, pair: PairState, settling: bool) -> PairForce:
-    """Force of a pair by all laws of the scene; `settling` as for `mesh_forces`."""
-    force = contact_force(m, t, y, pair, settling)
-    if m.scene.curvature_force != 0 and m.scene.population.flanks == 0:
-        force = both_forces(force, curvature_force(m, t, y, pair))
-    if m.scene.attracts != 0:
-        force = both_forces(force, attraction_force(m, y, pair))
-    if m.scene.film_damping != 0.0:
-        force = both_forces(force, film_force(m, pair))
-    return force
+from gearidae.laws.pair_law import PairForce, in_reach
 
 
 @compiled(inline=True)
@@ -116,7 +53,7 @@ def mesh_forces(m: Model, t: float, y: Floats, settling: bool) -> MeshForces:
     for i in range(reach.total):
         coast, number = pair_at(reach, i)
         pair = state_of_pair(m, coast, number, y)
-        if acts(m, pair):
+        if in_reach(m, pair.gap):
             force = force_of_pair(m, t, full, pair, settling)
             if m.scene.noting != 0:
                 note_pair_force(m, pair, force)
@@ -134,7 +71,7 @@ def forces_at(m: Model, t: float, y: Floats) -> MeshForces:
 def force_of_one(m: Model, t: float, y: Floats, coast: int, number: int) -> float:
     """Force of a single pair along the line of action by all laws of the scene, positive where its flanks push."""
     pair = state_of_pair(m, coast, number, y)
-    return force_of_pair(m, t, y, pair, False).load if acts(m, pair) else 0.0
+    return force_of_pair(m, t, y, pair, False).load if in_reach(m, pair.gap) else 0.0
 
 
 # -- slopes along which deflections follow ---------------------------------------------------------------------------
@@ -207,7 +144,7 @@ def _ask_for_deflections(m: Model, t: float, y: Floats, kind: int) -> None:
     for i in range(reach.total):
         coast, number = pair_at(reach, i)
         pair = pair_state(m, coast, number, y)
-        if acts(m, pair):
+        if in_reach(m, pair.gap):
             m.work.settling[pair.k].reached = 1
             note_shares(m, pair.k, coast, number, pair.place)
             pair_deflections(m, kind, t, y, pair, contact_length(m, pair.place))

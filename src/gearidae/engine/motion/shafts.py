@@ -16,6 +16,7 @@ from gearidae.engine.friction.forces import (
     with_acting,
 )
 from gearidae.engine.friction.pairs import direction, levers, set_limits
+from gearidae.engine.laws.pairs import mesh_by_rate, mesh_force
 from gearidae.engine.model.record_types import AT_REST, FREE, HELD_GEAR, HELD_PAIR
 from gearidae.engine.model.state import DRIVE, LOAD, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
@@ -49,7 +50,7 @@ class Shafts(NamedTuple):
 @compiled(inline=True)
 def shafts_at(m: Model, t: float, y: Floats, mesh: MeshForces) -> Shafts:
     """Put the forces of the mesh, its damping and the torques on the pinion on both shafts."""
-    force = mesh.force + m.scene.damping * y[V]
+    force = mesh_force(m, y[V], mesh.force)
     turn, e = speed_and_error(m, y)
     drive = pinion_force(m, t, torque_angle(m, DRIVE, y[U], y[PHASE]), turn)
     return Shafts(turn, drive - (1.0 - e.pinion) * force, (1.0 + e.gear) * force + mesh.relief, e)
@@ -140,7 +141,7 @@ def acceleration_slopes(m: Model, y: Floats, mesh: MeshForces) -> AccelerationSl
     )
     if m.scene.friction.rubs != 0:
         f = _friction_slopes(m, y)
-    turn, damping = y[V] + y[W], m.scene.damping
+    turn, damping = y[V] + y[W], mesh_by_rate(m, 0.0)
     pinion_u, pinion_phase = f.pinion_u - mesh.force_u, f.pinion_phase - mesh.force_phase
     angle = torque_angle(m, DRIVE, y[U], y[PHASE])
     own_speed = by_speed(m, DRIVE, angle, turn, -0.0)

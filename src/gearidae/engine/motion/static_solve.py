@@ -12,6 +12,7 @@ from gearidae.engine.model.state import EMPTY, PHASE, Floats, Model
 from gearidae.engine.motion.residual import residual
 from gearidae.engine.pairs.coverage import path_position
 from gearidae.engine.pairs.tooth_pairs import contact_length, flank_of_history
+from gearidae.laws.pair_law import in_reach
 
 SETTLED = 1e-12  # roughnesses
 _TRIES = 60
@@ -91,7 +92,7 @@ def fold_gap(m: Model, t: float, y: Floats) -> float:
     for k in range(m.scene.histories):
         h = m.state.history[k]
         gap, direction = float(h.gap), float(h.direction)
-        if h.pair == EMPTY or gap >= m.scene.cutoff:
+        if h.pair == EMPTY or not in_reach(m, gap):
             continue
         length = contact_length(m, path_position(m, flank_of_history(m, k), int(h.pair), float(y[PHASE])))
         kept = row_of(m, k, GAP) - gap - profile

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.energy.contacts import joining_losses
+from gearidae.engine.laws.pairs import joining_losses
 from gearidae.engine.model.state import PHASE, Floats, Model, V, W
 from gearidae.engine.pairs.coverage import NONE, Shares, path_position, shares_of, weighed
 from gearidae.engine.pairs.lengths import weighed_length
@@ -26,6 +26,7 @@ from gearidae.engine.pairs.tooth_pairs import (
     path_gap,
 )
 from gearidae.formulas.quadrature import integral
+from gearidae.laws.pair_law import in_reach
 
 
 @compiled(inline=True)
@@ -101,7 +102,7 @@ def _follow_pairs(m: Model, span: float, y: Floats, w_rate: float) -> None:
         k = m.work.known[i]
         coast, h = flank_of_history(m, k), m.state.history[k]
         gap = path_gap(m, coast, h.pair, y)
-        if h.direction >= 0.0 or gap >= m.scene.cutoff or not is_on_path(m, coast, h.pair):
+        if h.direction >= 0.0 or not in_reach(m, gap) or not is_on_path(m, coast, h.pair):
             continue
         power = rate = 0.0
         losses, slopes = joining_losses(m, k, y, gap)

@@ -35,17 +35,15 @@ from typing import Final
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine import adams
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.energy.contacts import stored_energy
-from gearidae.engine.energy.kinetic import energy_of_speeds, kinetic_energy
-from gearidae.engine.energy.radius import radius_power
 from gearidae.engine.events.mesh_marks import crossed_mark
 from gearidae.engine.events.pair_events import newly_stretched
 from gearidae.engine.events.sliding import dry_guard
+from gearidae.engine.laws.pairs import LOSING, book_losses_of_mesh, radius_power, stored_energy
 from gearidae.engine.model.state import DRIVE, LOAD, MATERIALS, PHASE, Floats, Model, U, V, W
+from gearidae.engine.motion.kinetic import energy_of_speeds, kinetic_energy
 from gearidae.engine.observers.adhesion_loss import joining_lag
 from gearidae.engine.pairs.mesh_error import pinion_acceleration, speed_and_error
 from gearidae.engine.pairs.shaft_angle import torque_angle
-from gearidae.engine.pairs.squeeze_film import film_loss
 from gearidae.engine.pairs.tooth_pairs import (
     flank_of_history,
     gap_and_rate,
@@ -56,7 +54,6 @@ from gearidae.formulas.quadrature import (
     Ends,
     error_estimate,
     integral,
-    integral_of_square,
     torque_work,
 )
 from gearidae.laws.shafts import book_losses, driving_force, driving_rate, is_constant, stored_by_laws
@@ -291,7 +288,7 @@ def _closes_interval(m: Model, h: float) -> bool:
 
 @compiled(inline=True)
 def _accumulate_losses(m: Model, t: float, y: Floats, yp: Floats) -> None:
-    """Add the losses of laws of the shafts, of mesh damping and of films, over every step."""
+    """Add the losses of laws of the shafts and of the mesh, over every step."""
     r = m.work.resistance
     h = t - r.time
     if h == 0.0:
@@ -306,17 +303,8 @@ def _accumulate_losses(m: Model, t: float, y: Floats, yp: Floats) -> None:
         ends = Ends(r.pinion_speed, r.pinion_acceleration, speed, acceleration)
         angle = torque_angle(m, DRIVE, y[U], y[PHASE])
         taken += book_losses(m, DRIVE, h, angle, travel - r.pinion_travel, ends)
-    if m.scene.damping != 0.0:
-        mesh = Ends(r.mesh_speed, r.mesh_acceleration, y[V], yp[V])
-        square, error = integral_of_square(h, y[U] - r.mesh_travel, mesh)
-        e.damping_loss += m.scene.damping * square
-        e.loss_error += m.scene.damping * error
-        taken += m.scene.damping * square
-    if m.scene.film_damping != 0.0:
-        lost, error = film_loss(m, h, y, yp)
-        e.film_loss += lost
-        e.loss_error += error
-        taken += lost
+    if m.scene.pair_laws & LOSING != 0:
+        taken = book_losses_of_mesh(m, h, y, yp, taken)
     _note_resistance(m, t, gear, y, yp)
     e.throughput += taken
 

@@ -17,6 +17,7 @@ from gearidae.engine.friction.ageing import JointFriction, joint_friction, joint
 from gearidae.engine.friction.forces import Shafts, solve_shafts
 from gearidae.engine.friction.hubs import Loads, Mesh, has_hubs, pin_rate, vector_sum
 from gearidae.engine.friction.pairs import direction, lever_rate, levers, set_limits
+from gearidae.engine.laws.pairs import mesh_force
 from gearidae.engine.model.record_types import HELD_PAIR
 from gearidae.engine.model.state import COAST, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.pair_forces import follow_slopes, is_eliminated, set_deflections
@@ -53,7 +54,7 @@ def note_friction(m: Model, t: float, y: Floats) -> None:
         set_limits(m, t, y[W])
     shafts = solve_shafts(m, t, y, turn, pinion, gear)
     r = m.work.friction
-    r.time, r.force = t, shafts.mesh.drive - shafts.mesh.coast + m.scene.damping * y[V]
+    r.time, r.force = t, mesh_force(m, y[V], shafts.mesh.drive - shafts.mesh.coast)
     for which in range(_POWERS):
         r.power[which] = r.power_rate[which] = 0.0
     drive = coast = drive_friction = coast_friction = 0.0  # rates

@@ -1,12 +1,7 @@
-r"""Shares of the materials of a pair, and its attraction; tables by tooth and place are `gearidae.scene.coating_table`.
+"""Shares of the materials of a pair; tables by tooth and place are `gearidae.scene.coating_table`.
 
 Without such tables the shares are in the materials' force scales, and the loading branches of all materials have been
 added up at set-up: shares are then ones, which do not change.
-
-The attraction across the gap is the closed form of `gearidae.contact.attraction`, scaled. Per unit length a material
-with the constant c pulls with :math:`-c\,h^{-5/2}`, h its gap with its offset. It would do so at any distance: the pull
-at the cut-off is taken off everywhere, so that force and energy end there continuously and nothing is lost where a pair
-leaves.
 """
 
 from __future__ import annotations
@@ -133,18 +128,12 @@ def limit_of_loading(m: Model, gap: float, shares: Shares) -> tuple[float, float
     return mixed_value(m.tables, m.scene.friction.loading_at, gap, shares)
 
 
-@compiled
-def attraction_of(m: Model, gap: float, shares: Shares) -> tuple[float, float]:
-    """Attraction of all materials across a gap and its slope, scaled, for a contact of unit length."""
-    a, b, c = attraction(m, 0, gap), attraction(m, 1, gap), attraction(m, 2, gap)
-    return weighed(shares, (a.force, b.force, c.force)), weighed(shares, (a.slope, b.slope, c.slope))
-
-
-@compiled
-def attraction_energies(m: Model, gap: float) -> tuple[Shares, Shares]:
-    """Energy of each material's attraction, scaled, per length and share, and its slopes in the gap."""
-    a, b, c = attraction(m, 0, gap), attraction(m, 1, gap), attraction(m, 2, gap)
-    return (a.energy, b.energy, c.energy), (-a.force, -b.force, -c.force)
+@compiled(inline=True)
+def added(a: tuple[Shares, Shares], b: tuple[Shares, Shares]) -> tuple[Shares, Shares]:
+    """Sum of what two laws say of each material, and of its slope."""
+    (a0, a1, a2), (a3, a4, a5) = a
+    (b0, b1, b2), (b3, b4, b5) = b
+    return (a0 + b0, a1 + b1, a2 + b2), (a3 + b3, a4 + b4, a5 + b5)
 
 
 @compiled
@@ -175,26 +164,3 @@ def path_position(m: Model, coast: int, pair: int, phase: float) -> float:
     """Position of a pair along the path of contact, clipped to it, in pitches."""
     along = m.scene.coast_phase + pair - phase if coast else phase - pair
     return min(max(along, 0.0), m.scene.contact_ratio)
-
-
-class Attraction(NamedTuple):
-    """Attraction of one material per unit length: force, its slope in the gap, and energy."""
-
-    force: float
-    slope: float
-    energy: float
-
-
-@compiled
-def attraction(m: Model, material: int, gap: float) -> Attraction:
-    """Attraction that a material of a pair would have if it covered everything, or with its share in the constant."""
-    surface = m.scene.material[material]
-    c, far = surface.attraction, m.scene.cutoff + surface.gap_offset
-    if c == 0.0 or gap >= m.scene.cutoff:
-        return Attraction(0.0, 0.0, 0.0)
-    h = gap + surface.gap_offset
-    near = max(h, m.scene.attraction_floor)
-    pull, last = c / (near * near * math.sqrt(near)), c / (far * far * math.sqrt(far))
-    slope = 2.5 * pull / near if h > m.scene.attraction_floor else 0.0
-    energy = -2.0 / 3.0 * pull * near + pull * (h - near)
-    return Attraction(last - pull, slope, energy + 2.0 / 3.0 * last * far - last * (h - far))

@@ -10,8 +10,9 @@ import math
 from typing import NamedTuple
 
 from gearidae.compiled import compiled
-from gearidae.engine.model.state import Model
+from gearidae.engine.model.state import PHASE, Floats, Model, V, W
 from gearidae.engine.pairs.coverage import WHOLE, Shares, path_position, share_changes, weighed
+from gearidae.engine.pairs.tooth_pairs import flank_of_history
 
 SHORTEST_SQ = 1e-12
 """Least square of a contact length: a step that is tried may lead beyond the path, to where there is none."""
@@ -95,6 +96,29 @@ def slopes_along_path(
     pitch = (1.0 - 2.0 * coast) / m.scene.phase_rate  # speed at which the pair goes a pitch in a unit of time
     length = weighed_length(m, (coast, pair, phase), pitch, 0.0, values, slopes)
     return length.rate, length.by_gap, length.bend
+
+
+@compiled(inline=True)
+def length_power(
+    m: Model, k: int, y: Floats, w_rate: float, energies: Shares, slopes: Shares
+) -> tuple[float, float]:
+    """What the changing length adds to the energy of the pair of the k-th history in a unit of time, and its rate.
+
+    Parameters
+    ----------
+    k : int
+        Index of the history.
+    y : ndarray
+        State.
+    w_rate : float
+        Acceleration of the gear's surface.
+    energies, slopes : tuple of three floats
+        Of each material per length, and in the gap, as for `weighed_length`.
+    """
+    coast = flank_of_history(m, k)
+    where = coast, m.state.history[k].pair, y[PHASE]
+    energy = weighed_length(m, where, y[W], w_rate, energies, slopes)
+    return energy.rate, energy.bend + -(1.0 - 2.0 * coast) * y[V] * energy.by_gap
 
 
 @compiled

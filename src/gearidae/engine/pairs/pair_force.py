@@ -1,4 +1,4 @@
-"""What every law of a tooth pair returns, and what that is for both gears: one type and one projection."""
+"""What the forces of tooth pairs are for both gears: one sum and one projection."""
 
 from __future__ import annotations
 
@@ -7,72 +7,7 @@ from typing import Final, NamedTuple
 from gearidae.compiled import compiled, name_type
 from gearidae.engine.model.state import Model
 from gearidae.engine.pairs.tooth_pairs import PairState
-
-
-class PairForce(NamedTuple):
-    """Force of one pair at one gap, rate and place, scaled, with its slopes.
-
-    Laws are additive: a new one fills in what it has, and leaves the rest at zero.
-
-    Attributes
-    ----------
-    load, by_gap, by_rate, by_place : float
-        Force along the line of action, which drives the flanks apart, and its slopes in the gap, in the gap's rate and
-        along the path of contact. The last is left out where it only steers Newton's iteration a little.
-    contact, contact_by_gap : float
-        What asperities in contact carry of it, on which friction acts, and its slope in the gap.
-    path, path_by_gap, path_by_place : float
-        Force along the path of contact at fixed gap, per pitch, and its slopes.
-    limit, limit_by_gap, limit_by_place : float
-        Largest friction, of a law that knows its contacts one by one, and its slopes.
-    """
-
-    load: float
-    by_gap: float
-    by_rate: float
-    by_place: float
-    contact: float
-    contact_by_gap: float
-    path: float
-    path_by_gap: float
-    path_by_place: float
-    limit: float
-    limit_by_gap: float
-    limit_by_place: float
-
-
-NO_PAIR_FORCE: Final = PairForce(*(0.0,) * 12)
-
-
-@compiled(inline=True)
-def of_contact(load: float, by_gap: float) -> PairForce:
-    """Force that asperities in contact carry alone."""
-    return PairForce(load, by_gap, 0.0, 0.0, load, by_gap, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-
-
-@compiled(inline=True)
-def of_path(path: float, by_gap: float, by_place: float) -> PairForce:
-    """Force along the path of contact alone."""
-    return PairForce(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, path, by_gap, by_place, 0.0, 0.0, 0.0)
-
-
-@compiled(inline=True)
-def both_forces(a: PairForce, b: PairForce) -> PairForce:
-    """Sum of what two laws return for the same pair."""
-    return PairForce(
-        a.load + b.load,
-        a.by_gap + b.by_gap,
-        a.by_rate + b.by_rate,
-        a.by_place + b.by_place,
-        a.contact + b.contact,
-        a.contact_by_gap + b.contact_by_gap,
-        a.path + b.path,
-        a.path_by_gap + b.path_by_gap,
-        a.path_by_place + b.path_by_place,
-        a.limit + b.limit,
-        a.limit_by_gap + b.limit_by_gap,
-        a.limit_by_place + b.limit_by_place,
-    )
+from gearidae.laws.pair_law import PairForce
 
 
 class MeshForces(NamedTuple):
@@ -102,7 +37,6 @@ class MeshForces(NamedTuple):
 
 NO_MESH_FORCES: Final = MeshForces(*(0.0,) * 10)
 
-name_type(NO_PAIR_FORCE, "PairForce")
 name_type(NO_MESH_FORCES, "MeshForces")
 
 

@@ -1,12 +1,9 @@
-"""Tooth pairs in mesh: gap, rate and force of each, from the scaled state (Teodorescu et al. 2009, Eqs. 4-6).
+"""Tooth pairs in mesh: gap and rate of each, from the scaled state (Teodorescu et al. 2009, Eqs. 4-6).
 
 A pair is known by its number i. On the drive flank it stands ``phase - i`` pitches along the path of contact, on the
 coast flank, mirrored about the pitch point and half a pitch later, ``coast_phase + i - phase``. A roller is pair 0 of
 the drive flank of a gear that is held, at one place of a path of contact without length. All functions take the
 records of `gearidae.engine.model.state` and the state's numbers, and are compiled.
-
-Gaps and joined heights are those of the pair. A material whose gap is wider by an offset has both wider by it where its
-tables are read, and nowhere else.
 """
 
 from __future__ import annotations
@@ -15,18 +12,9 @@ import math
 from typing import NamedTuple
 
 from gearidae.compiled import compiled, compiled_once, name_type
-from gearidae.contact.history import extreme_gap, joined_height
-from gearidae.contact.kernels.law import (
-    B_PIECES,
-    branch_length,
-    branch_value,
-    loading_value,
-    set_branch,
-    stretched_value,
-)
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.model.state import COAST, DRIVE, MATERIALS, PHASE, Floats, Model, U, V, W
-from gearidae.engine.pairs.coverage import Shares, loading_of
+from gearidae.engine.model.state import COAST, DRIVE, PHASE, Floats, Model, U, V, W
+from gearidae.laws.pair_law import NO_PAIR_FORCE, GapMotion, in_reach
 
 # -- the walk over the pairs -----------------------------------------------------------------------------------------
 
@@ -72,8 +60,7 @@ def pairs_along(m: Model, phase: float) -> Reach:
 @compiled(inline=True)
 def pairs_touching(m: Model, y: Floats) -> Reach:
     """Pairs of the flanks whose nearest gap is within the cut-off: tip relief only opens a gap."""
-    cutoff = m.scene.cutoff
-    drive, coast = nearest_gap(m, DRIVE, y) < cutoff, nearest_gap(m, COAST, y) < cutoff
+    drive, coast = in_reach(m, nearest_gap(m, DRIVE, y)), in_reach(m, nearest_gap(m, COAST, y))
     return _reach(m, y[PHASE], drive, coast)
 
 
@@ -86,9 +73,8 @@ def pairs_near(m: Model, y: Floats) -> Reach:
 @compiled(inline=True)
 def pairs_felt(m: Model, y: Floats) -> Reach:
     """Pairs of the flanks that touch at a state or were near at the last accepted time: any may have a force."""
-    cutoff = m.scene.cutoff
-    drive = m.state.flank_in_reach[DRIVE] != 0 or nearest_gap(m, DRIVE, y) < cutoff
-    coast = m.state.flank_in_reach[COAST] != 0 or nearest_gap(m, COAST, y) < cutoff
+    drive = m.state.flank_in_reach[DRIVE] != 0 or in_reach(m, nearest_gap(m, DRIVE, y))
+    coast = m.state.flank_in_reach[COAST] != 0 or in_reach(m, nearest_gap(m, COAST, y))
     return _reach(m, y[PHASE], drive, coast)
 
 
@@ -184,6 +170,7 @@ class PairState(NamedTuple):
 
 
 name_type(PairState(0, 0, 0, True, 0.0, 0.0, 0.0, 0.0, 0.0, True), "PairState")
+name_type(NO_PAIR_FORCE, "PairForce")
 
 
 @compiled(inline=True)
@@ -216,6 +203,24 @@ def pair_gap(
     gap += 0.5 * s.relief_curvature * outside * outside
     turn = -w if coast else w
     return gap, toward + slope * turn, slope, inside
+
+
+@compiled
+def pair_motion(
+    m: Model,
+    coast: int,
+    number: int,
+    motion: tuple[float, float, float, float],
+    v_rate: float,
+    w_rate: float,
+) -> GapMotion:
+    """Gap of a pair with two rates at a state (u, v, phase and w) with accelerations."""
+    u, v, phase, w = motion
+    gap, rate, slope, _ = pair_gap(m, coast, number, u, v, phase, w)
+    acceleration = (1.0 - 2.0 * coast) * (slope * w_rate - v_rate)
+    if slope != 0.0:
+        acceleration += m.scene.relief_slope * m.scene.phase_rate * w * w
+    return GapMotion(gap, rate, acceleration)
 
 
 @compiled_once(SOLVER)
@@ -266,12 +271,6 @@ def on_path(pair: PairState, place: float, place_rate: float, moves: bool) -> Pa
     )
 
 
-@compiled(inline=True)
-def acts(m: Model, pair: PairState) -> bool:
-    """Whether a pair may have a force: within the cut-off, whatever its history knows of it."""
-    return bool(pair.gap < m.scene.cutoff)
-
-
 @compiled
 def contact_length(m: Model, inside: float) -> float:
     """Length of a contact of given gap, ``sqrt(R / pb)`` with R the reduced radius of two involutes; 1 of a roller."""
@@ -302,91 +301,3 @@ def nearest_gap(m: Model, coast: int, y: Floats) -> float:
 def in_flight(m: Model) -> bool:
     """Whether both flanks are too far away for any pair to touch."""
     return bool(m.state.flank_in_reach[DRIVE] == 0 and m.state.flank_in_reach[COAST] == 0)
-
-
-# -- forces ----------------------------------------------------------------------------------------------------------
-
-
-@compiled(inline=True)
-def pair_force(
-    m: Model, k: int, known: bool, t: float, gap: float, rate: float, inside: float, shares: Shares
-) -> tuple[float, float]:
-    """Force of the mean law for one pair and its slope in the gap, scaled, with the pair's own history, the k-th.
-
-    `shares` are those of the materials there, from `gearidae.engine.pairs.coverage.shares_of`. Within a step that has
-    turned the pair round, the history first goes through the turning point.
-    """
-    force, slope = loading_of(m, gap, shares)
-    if known:
-        h = m.state.history[k]
-        turned = h.direction * rate < 0.0
-        turning_gap = gap
-        if turned:
-            turning_gap = extreme_gap(t - m.state.time, h.gap, h.gap_rate, gap, rate)
-        for material in range(MATERIALS):
-            surface = m.scene.material[material]
-            limit = surface.stretch_limit
-            if limit == 0.0:
-                continue
-            joined = h.joined[material]
-            if turned:
-                joined = joined_height(joined, turning_gap, limit)
-            stretch = gap - joined
-            if stretch <= 0.0:
-                continue
-            first = force_branch(m, k, material)
-            kept = m.scene.branch_length > 0 and m.rows[first + B_PIECES] > 0.0
-            if stretch < limit and not turned and kept:
-                q, dq = branch_value(m.rows[first:], stretch)
-            else:
-                offset = surface.gap_offset
-                q, dq = stretched_value(m.tables[surface.table_at :], gap + offset, joined + offset)
-            scale = surface.force_scale * shares[material]
-            force += scale * q
-            slope += scale * dq
-    length = contact_length(m, inside)
-    return force * length, slope * length
-
-
-@compiled
-def set_joined(m: Model, k: int, material: int, joined: float) -> None:
-    """Store the joined height of a turning point, and work out the branch that starts from it."""
-    h, surface = m.state.history[k], m.scene.material[material]
-    h.joined[material] = joined
-    number = loading_value(m.tables, surface.number_at, joined + surface.gap_offset)[0]
-    h.adhered_energy[material] = -surface.joining_energy * number
-    set_branches(m, k, material)
-
-
-@compiled
-def set_branches(m: Model, k: int, material: int) -> None:
-    """Work out the branch of a history's joined height.
-
-    A law that is integrated on demand keeps no branches, nor does an elastic contact. That of the stored energy
-    waits until the energy balance needs it.
-    """
-    surface = m.scene.material[material]
-    table = m.tables[surface.table_at :]
-    if m.scene.branch_length > 0 and branch_length(table) > 0:
-        joined = m.state.history[k].joined[material] + surface.gap_offset
-        set_branch(table, joined, m.rows[force_branch(m, k, material) :])
-        m.rows[energy_branch(m, k, material) + B_PIECES] = 0.0
-
-
-def set_all_branches(m: Model) -> None:
-    """Work out the branches of all histories, where these come from a checkpoint or from another model."""
-    for k in range(m.scene.histories):
-        for material in range(MATERIALS):
-            set_branches(m, k, material)
-
-
-@compiled
-def force_branch(m: Model, k: int, material: int) -> int:
-    """Place of a material's branch of the force law at a history's joined height, among the rows."""
-    return m.scene.branches_at + (2 * MATERIALS * k + material) * m.scene.branch_length
-
-
-@compiled
-def energy_branch(m: Model, k: int, material: int) -> int:
-    """Place of a material's branch of the stored energy there."""
-    return m.scene.branches_at + (2 * MATERIALS * k + MATERIALS + material) * m.scene.branch_length

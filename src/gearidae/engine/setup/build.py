@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-from operator import attrgetter
 
 import numpy as np
 
@@ -13,7 +12,8 @@ from gearidae.engine.elastic.layout import DEPTH_HIGH, ContactBounds
 from gearidae.engine.elastic.rows import scratch_size
 from gearidae.engine.events.histories import begin
 from gearidae.engine.events.mesh_marks import MARKS
-from gearidae.engine.model.scene_record import KEYED
+from gearidae.engine.laws.pairs import laws_of_mesh
+from gearidae.engine.model.scene_record import MESH_CONSTANTS
 from gearidae.engine.model.state import (
     COAST,
     DRIVE,
@@ -42,11 +42,13 @@ from gearidae.engine.setup.checkpoint import scene_digest
 from gearidae.engine.setup.problem import Problem
 from gearidae.engine.setup.start import AT_ONCE, Start
 from gearidae.engine.setup.tables import Tables
+from gearidae.laws.pairs import number_of_mesh
 from gearidae.laws.shaft.own import law_address, switch_address
 from gearidae.laws.shaft.schedule import (
     segment_ends,
 )
 from gearidae.mesh.involute import Geometry
+from gearidae.records.quantity import Unit
 from gearidae.scene import MATERIAL_NAMES, GearScene, RollerScene, Scene, require_gears
 from gearidae.scene.combinations import may_deflect
 from gearidae.scene.limits import check_reach, pairs_within_reach, relief_in_reach
@@ -125,7 +127,7 @@ def _gear_problem(scene: GearScene, nodes: Nodes | None, begin: Start) -> Proble
         geometry.base_pitch / float(s.gear_radius),
     )
     s.curvature_force = int(mesh.radius_force)
-    _set_keyed(s, scene)
+    _set_mesh_constants(s, scene)
     grid = choose_model(s, scene, _gear_bounds(s, scene), nodes)
     s.dry = int(load.is_dry)
     widest = math.sqrt(0.25 / float(s.sum_curvature))
@@ -216,10 +218,11 @@ def _set_units(s: Record, scene: GearScene) -> None:
     s.pinion_inverse_mass, s.gear_inverse_mass = mass / pinion_mass, mass / gear_mass
 
 
-def _set_keyed(s: Record, scene: Scene) -> None:
-    """Set the numbers that a key of the scene says."""
-    for name, (key, unit) in KEYED.items():
-        s[name] = attrgetter(key)(scene) / unit.in_si(s)
+def _set_mesh_constants(s: Record, scene: Scene) -> None:
+    """Set the constants of laws of the mesh that a key of the scene says."""
+    for constant in MESH_CONSTANTS:
+        unit = Unit("", force=constant.force, length=constant.length, time=constant.time)
+        s[constant.name] = number_of_mesh(scene, constant.name) / unit.in_si(s)
 
 
 def _set_geometry(s: Record, geometry: Geometry, tip_relief_radius: float) -> None:
@@ -300,6 +303,7 @@ def _add_pitch_errors(s: Record, tables: Tables, scene: GearScene) -> None:
 def _model(s: Record, tables: Tables, scale: list[float]) -> Model:
     """Put the model together, and note where its changing rows are; `scale` is that of the motion's states."""
     nodes, histories = int(s.nodes), int(s.histories)
+    s.pair_laws = laws_of_mesh(s)
     s.states = MOTION + nodes * histories
     moving = MOTION if s.gear_inverse_mass > 0.0 else 2
     s.scale_at = tables.add(_scale(nodes, histories, scale, moving))

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from gearidae.engine.laws.statistical import set_all_branches
 from gearidae.engine.model.addresses import Addresses
 from gearidae.engine.model.state import (
     DRIVE,
@@ -24,7 +25,6 @@ from gearidae.engine.model.state import (
 from gearidae.engine.observers.dispatch import look_at
 from gearidae.engine.observers.exposures.bins import exposures_of
 from gearidae.engine.observers.extremes.units import extremes_in_si
-from gearidae.engine.pairs.tooth_pairs import set_all_branches
 from gearidae.engine.setup import checkpoint as checkpoints
 from gearidae.engine.setup.kept_asperities import restore_asperities
 from gearidae.errors import SceneError

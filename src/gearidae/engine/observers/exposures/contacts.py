@@ -13,15 +13,14 @@ the energy balance. The largest pressure of a pair is followed from one look at 
 from __future__ import annotations
 
 from gearidae.compiled import compiled, compiled_once
-from gearidae.contact.history import extreme_gap, joined_height
-from gearidae.contact.kernels.law import loading_value
+from gearidae.contact.history import extreme_gap
 from gearidae.engine.compiling import EXPOSURES
-from gearidae.engine.elastic.energy import nodes_number
+from gearidae.engine.laws.discrete import candidate_energy
+from gearidae.engine.laws.pairs import asperities_in_contact
 from gearidae.engine.model.state import MATERIALS, Floats, Model
 from gearidae.engine.observers.exposures.bins import ROWS, bin_at, row_of, share_at_edge
 from gearidae.engine.pairs.tooth_pairs import contact_length, list_known
 from gearidae.engine.population.contact_point import pair_of, place_of_arc, spot_at
-from gearidae.engine.population.forces import candidate_energy
 from gearidae.engine.population.layout import ARC, HEIGHT, K_MATERIAL, KIND, REMEMBERED, SIGN, column
 from gearidae.formulas.interpolation import cubic
 
@@ -56,7 +55,7 @@ def turn_to_closing(m: Model, y: Floats, k: int, gap: float) -> None:
     for material in range(MATERIALS):
         law = m.scene.material[material]
         if law.force_scale > 0.0 and (law.stretch_limit == 0.0 or m.scene.nodes > 0):
-            exposure.front[material] = _front(m, y, k, gap, material)
+            exposure.front[material] = asperities_in_contact(m, k, y, gap, material)
 
 
 @compiled(inline=True)
@@ -119,23 +118,13 @@ def _note_numbers(m: Model, y: Floats, k: int, gap: float) -> float:
         exposure.number[material] = exposure.base[material] = 0.0
         if law.force_scale <= 0.0:
             continue
-        exposure.number[material] = _front(m, y, k, gap, material)
+        exposure.number[material] = asperities_in_contact(m, k, y, gap, material)
         if law.stretch_limit > 0.0 and m.scene.nodes == 0:
             exposure.base[material] = -h.adhered_energy[material] / law.joining_energy
             lost += (
                 law.joining_energy * law.force_scale * (exposure.number[material] - exposure.base[material])
             )
     return h.lag / lost if lost > 0.0 else 0.0
-
-
-@compiled(inline=True)
-def _front(m: Model, y: Floats, k: int, gap: float, material: int) -> float:
-    """Asperities of a material in contact per length, over their density."""
-    surface = m.scene.material[material]
-    if m.scene.nodes > 0:
-        return nodes_number(m, k, y, gap, material)
-    height = joined_height(m.state.history[k].joined[material], gap, surface.stretch_limit)
-    return loading_value(m.tables, surface.number_at, height + surface.gap_offset)[0]
 
 
 @compiled
@@ -161,7 +150,7 @@ def _divide(
         front = first + share * (last - first)
         if m.scene.nodes == 0:  # of elastic contacts the deflection on the way is not known
             passing = cubic(share, t - exposure.time, exposure.gap, exposure.gap_rate, gap, rate)
-            front = min(max(_front(m, y, k, passing, material), before), last)
+            front = min(max(asperities_in_contact(m, k, y, passing, material), before), last)
         _add(m, k, material, here, more * (front - before) / (last - first))
         here, before = here + step, front
     _add(m, k, material, here, more * (last - before) / (last - first))

@@ -29,8 +29,9 @@ import math
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import EXPOSURES
 from gearidae.engine.events.pair_events import PairEvent
+from gearidae.engine.laws.pairs import force_of_pair
 from gearidae.engine.model.state import MATERIALS, PHASE, Floats, Model, U, V, W
-from gearidae.engine.motion.pair_forces import force_of_pair, forces_at
+from gearidae.engine.motion.pair_forces import forces_at
 from gearidae.engine.observers.exposures.bins import bin_at, row_of, way_to_edge
 from gearidae.engine.observers.exposures.contacts import (
     adds_often,

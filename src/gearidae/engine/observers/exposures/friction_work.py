@@ -12,12 +12,12 @@ from __future__ import annotations
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import FRICTION
+from gearidae.engine.laws.discrete import candidate_limit, candidate_load
 from gearidae.engine.model.state import PHASE, Floats, Model
 from gearidae.engine.observers.exposures.bins import ROWS, bin_at, row_of
 from gearidae.engine.pairs.coverage import path_position
 from gearidae.engine.pairs.tooth_pairs import flank_of_history
 from gearidae.engine.population.contact_point import pair_now, place_of_arc, spot_at
-from gearidae.engine.population.forces import candidate_limit, candidate_load
 from gearidae.engine.population.layout import ARC, HEIGHT, JOINED, KIND, column
 
 

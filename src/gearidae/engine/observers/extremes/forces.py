@@ -13,6 +13,7 @@ from typing import Final
 
 from gearidae.compiled import compiled
 from gearidae.engine import adams
+from gearidae.engine.laws.pairs import mesh_force
 from gearidae.engine.model.state import DRIVE, PHASE, Floats, Model, Record, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
 from gearidae.engine.pairs.mesh_error import pinion_acceleration, speed_and_error
@@ -38,7 +39,7 @@ def force_of_motion(m: Model, t: float, y: Floats, yp: Floats) -> float:
     too: with it the contact law is asked.
     """
     if in_flight(m):
-        return m.scene.damping * y[V]
+        return mesh_force(m, y[V], 0.0)
     if m.scene.friction.rubs != 0:
         return _force_with_friction(m, t, y)
     turn, e = speed_and_error(m, y)
@@ -157,7 +158,7 @@ def _force_between(m: Model, before: Record, last: Record, now: Record, t: float
 @compiled
 def force_of_law(m: Model, t: float, y: Floats) -> float:
     """Force at a state, by the contact law, mesh damping included."""
-    return float(forces_at(m, t, y).force + m.scene.damping * y[V])
+    return float(mesh_force(m, y[V], forces_at(m, t, y).force))
 
 
 @compiled

@@ -13,6 +13,7 @@ from gearidae.compiled import compiled, compiled_once
 from gearidae.contact.history import extreme_gap
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.friction.forces import NO_FORCE, dry_force
+from gearidae.engine.laws.pairs import mesh_force
 from gearidae.engine.model.checkpoint_record import WINDOWS
 from gearidae.engine.model.state import Floats, Model, Record, U, V
 from gearidae.engine.motion.pair_forces import forces_at
@@ -116,7 +117,7 @@ def is_pulled_back(m: Model, t: float, y: Floats) -> bool:
     """Whether the drive flank pulls a gear back whose speed falls to zero, by more than dry resistance holds."""
     mesh = forces_at(m, t, y)
     pull = -(mesh.force + mesh.relief)
-    held_up_to = m.scene.damping * y[V] + (dry_force(m, t, y) + NO_FORCE if m.scene.dry != 0 else 0.0)
+    held_up_to = mesh_force(m, y[V], dry_force(m, t, y) + NO_FORCE if m.scene.dry != 0 else 0.0)
     return bool(y[U] > 0.0 and pull > max(held_up_to, 0.0))
 
 

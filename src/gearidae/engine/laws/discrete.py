@@ -1,4 +1,4 @@
-r"""Forces and energy of a population: sums over the joined asperities of a pair.
+r"""Asperities one by one as a law of a pair: sums over those of a population that are joined.
 
 A pair's asperities push with :math:`W = \sum P` along the line of action, and with :math:`T = -\sum P D` along the path
 of contact, since the overlaps change with it: that of a stretched asperity behind the contact holds the rolling back.
@@ -7,13 +7,12 @@ Both are derivatives of the energy that the asperities store.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.contact.kernels.single import asperity_energy, asperity_value
 from gearidae.engine.compiling import POPULATION
-from gearidae.engine.model.state import Model
-from gearidae.engine.pairs.pair_force import NO_PAIR_FORCE, PairForce
+from gearidae.engine.model.state import Floats, Model
 from gearidae.engine.pairs.tooth_pairs import PairState
 from gearidae.engine.population.contact_point import overlap_slopes, spot_at
 from gearidae.engine.population.layout import (
@@ -29,6 +28,7 @@ from gearidae.engine.population.layout import (
     KIND,
     column,
 )
+from gearidae.laws.pair_law import NO_PAIR_FORCE, PairForce, PairLaw, both_forces
 
 
 class Sums(NamedTuple):
@@ -121,9 +121,8 @@ def candidate_limit(
 @compiled_once(POPULATION)
 def asperity_force(m: Model, pair: PairState) -> PairForce:
     """Force of a pair's joined asperities, with the limit of their friction, scaled."""
-    if (
-        not pair.known or m.work.contact[pair.k].joined == 0
-    ):  # what is joined belongs to the pair of the history
+    # what is joined belongs to the pair of the history
+    if not pair.known or m.work.contact[pair.k].joined == 0:
         return NO_PAIR_FORCE
     s = _sums(m, pair.k, pair)
     return PairForce(
@@ -143,7 +142,7 @@ def asperity_force(m: Model, pair: PairState) -> PairForce:
 
 
 @compiled_once(POPULATION)
-def asperities_energy(m: Model, pair: PairState) -> float:
+def _stored(m: Model, pair: PairState) -> float:
     """Energy that a pair's joined asperities store, from free surfaces, scaled."""
     energy, k, joined = 0.0, pair.k, column(m, pair.k, JOINED)
     at = spot_at(m, pair.place, pair.moves)
@@ -164,3 +163,20 @@ def asperities_joined(m: Model) -> tuple[float, float]:
         asperities += m.work.contact[k].joined
         pairs += 1.0 if m.work.contact[k].joined > 0 else 0.0
     return asperities, pairs
+
+
+@compiled(inline=True)
+def _force(m: Model, t: float, y: Floats, pair: PairState, settling: bool, value: PairForce) -> PairForce:
+    return both_forces(value, asperity_force(m, pair))
+
+
+@compiled
+def _energy(m: Model, y: Floats, pair: PairState, value: tuple[float, float]) -> tuple[float, float]:
+    return value[0] + _stored(m, pair), value[1]
+
+
+def _acts(scene: Any) -> bool:
+    return bool(scene.population.flanks != 0)
+
+
+DISCRETE = PairLaw(name="discrete asperities", acts=_acts, force=_force, energy=_energy)

@@ -1,0 +1,201 @@
+r"""All laws of a tooth pair, and their sums.
+
+Laws of contacts come first: many surfaces on average, elastic bodies, or asperities one by one, of which a mesh has
+one. Sums of forces and energies begin at -0.0, to which adding a number gives that number.
+
+The length of a contact, and with it the number of asperities in touch, changes along the path of contact, and shares of
+the materials that change with tooth and place change it as well. In the paper's model no force pays for that; see
+`gearidae.engine.observers.balance`, which books the power. With ``mesh.radius_force`` a force does: a pair with the
+length :math:`\ell s_m` of each material, of the energy :math:`U_m` per length, pushes the gear along its motion
+:math:`x_2` with
+
+.. math:: -\sum_m U_m \frac{d(\ell s_m)}{dx_2} \quad \left( = -\ell U \frac{R'}{2R} \text{ where shares stay} \right)
+
+at fixed gap. As the phase of the mesh is the gear's, the pinion has no part in it. U is zero at detachment. What
+elastic bodies store besides, B per length, adds :math:`-B\,d\ell/dx_2`.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from gearidae.compiled import compiled, compiled_once
+from gearidae.engine.compiling import SOLVER
+from gearidae.engine.laws.attraction import ATTRACTION
+from gearidae.engine.laws.discrete import DISCRETE
+from gearidae.engine.laws.elastic import ELASTIC
+from gearidae.engine.laws.statistical import STATISTICAL
+from gearidae.engine.model.state import PHASE, Floats, Model, Record, U, V, W
+from gearidae.engine.pairs.coverage import NONE, Shares
+from gearidae.engine.pairs.tooth_pairs import (
+    PairState,
+    flank_of_history,
+    is_on_path,
+    list_known,
+    pair_at,
+    pair_motion,
+    pairs_felt,
+    path_gap,
+)
+from gearidae.engine.population.contact_point import state_of_pair
+from gearidae.formulas.quadrature import Ends
+from gearidae.laws.law import Verb, in_turn
+from gearidae.laws.pair_law import PairForce, PairLaw, in_reach
+from gearidae.laws.pairs import MESH_LAWS
+
+PAIR_LAWS: Final[tuple[PairLaw, ...]] = (STATISTICAL, ELASTIC, DISCRETE, ATTRACTION, *MESH_LAWS)
+"""In the order of additions. A mesh says which of these it has: `pair_laws` is the sum of 1, 2, 4.. by their places."""
+
+_NOTHING: Final = PairForce(*(-0.0,) * 12)
+
+
+def laws_of_mesh(scene: Record) -> int:
+    """Sum of 1, 2, 4.. of the laws that a mesh has, by its constants in ``SCENE``."""
+    return sum(1 << k for k, law in enumerate(PAIR_LAWS) if law.acts(scene))
+
+
+def _where_it_acts(law: PairLaw, verb: Verb) -> Verb:
+    """Verb of a law that is asked of meshes that have the law only."""
+    bit = 1 << PAIR_LAWS.index(law)
+
+    @compiled(inline=True)
+    def ask(*arguments: Any) -> Any:
+        value = arguments[-1]
+        if arguments[0].scene.pair_laws & bit != 0:
+            value = verb(*arguments)
+        return value
+
+    return ask
+
+
+def _sum(name: str) -> Any:
+    """Sum over the verbs of one name."""
+    verbs = ((law, getattr(law, name)) for law in PAIR_LAWS)
+    return in_turn(tuple(_where_it_acts(law, verb) for law, verb in verbs if verb is not None))
+
+
+_force = _sum("force")
+_energy = _sum("energy")
+_joining = _sum("joining")
+_in_contact = _sum("in_contact")
+_power = _sum("power")
+mesh_force = _sum("mesh_force")
+"""Add the force on a mesh by the rate of the transmission error alone: (m, rate, value) -> value."""
+mesh_by_rate = _sum("mesh_by_rate")
+"""Add the slope of that: (m, value) -> value."""
+
+
+@compiled(inline=True)
+def force_of_pair(m: Model, t: float, y: Floats, pair: PairState, settling: bool) -> PairForce:
+    """Force of a pair within reach by all laws of its mesh; `settling` as for `PairLaw`."""
+    return _force(m, t, y, pair, settling, _NOTHING)
+
+
+@compiled
+def joining_losses(m: Model, k: int, y: Floats, gap: float) -> tuple[Shares, Shares]:
+    """What each material of a pair has lost per length by joining since the last turning point, and slopes in the gap.
+
+    Of each as if it covered everything.
+    """
+    return _joining(m, k, y, gap, (NONE, NONE))
+
+
+@compiled(inline=True)
+def asperities_in_contact(m: Model, k: int, y: Floats, gap: float, material: int) -> float:
+    """Asperities of a material of a pair in contact per length, over their density."""
+    return _in_contact(m, k, y, gap, material, -0.0)
+
+
+@compiled_once(SOLVER)
+def stored_energy(m: Model, y: Floats) -> tuple[float, float]:
+    """Stored energy of all contacts, and the part lost by asperities in contact since the last turning point.
+
+    Parameters
+    ----------
+    m : Model
+        With the histories as they are at `y`.
+    y : ndarray
+        State.
+
+    Returns
+    -------
+    stored, pending : float
+        Scaled; the true stored energy is their difference.
+    """
+    stored = pending = 0.0
+    for i in range(list_known(m, y)):
+        k = m.work.known[i]
+        pair = state_of_pair(m, flank_of_history(m, k), m.state.history[k].pair, y)
+        if in_reach(m, pair.gap):
+            energy, lost = _energy(m, y, pair, (-0.0, -0.0))
+            stored += energy
+            pending += lost
+    return stored, pending
+
+
+@compiled
+def radius_power(m: Model, t: float, y: Floats, w_rate: float) -> tuple[float, float]:
+    """Power of the changing radius, what length adds to a pair's energy times the length's rate, and its own rate."""
+    power = rate = 0.0
+    if m.scene.curvature_force != 0:  # it is the work of a force then, which motion and contacts exchange
+        return power, rate
+    for i in range(list_known(m, y)):
+        k = m.work.known[i]
+        coast, pair = flank_of_history(m, k), m.state.history[k].pair
+        gap = path_gap(m, coast, pair, y)
+        if in_reach(m, gap) and is_on_path(m, coast, pair):
+            more, change = _power(m, t, y, k, gap, w_rate, (-0.0, -0.0))
+            power += more
+            rate += change
+    return power, rate
+
+
+# -- losses ----------------------------------------------------------------------------------------------------------
+
+
+def _booking(law: PairLaw) -> Verb:
+    """Verb that books what a law takes in a step from the mesh and from all pairs, and adds it."""
+    name = law.losses[0].name
+    of_mesh: Any = law.mesh_loss
+    of_pair: Any = law.loss
+
+    if of_mesh is not None:
+
+        @compiled
+        def book(m: Any, h: float, y: Any, yp: Any, value: float) -> float:
+            r = m.work.resistance
+            rates = Ends(r.mesh_speed, r.mesh_acceleration, y[V], yp[V])
+            lost, error = of_mesh(m, h, y[U] - r.mesh_travel, rates, (0.0, 0.0))
+            m.state.energy[name] += lost
+            m.state.energy.loss_error += error
+            return value + lost
+
+        return book
+
+    @compiled
+    def book_pairs(m: Any, h: float, y: Any, yp: Any, value: float) -> float:
+        r, taken = m.work.resistance, (0.0, 0.0)
+        phase, reach = m.scene.phase_rate * r.gear_travel, pairs_felt(m, y)
+        before = r.mesh_travel, r.mesh_speed, phase, r.gear_speed
+        now = y[U], y[V], y[PHASE], y[W]
+        for i in range(reach.total):
+            coast, number = pair_at(reach, i)
+            start = pair_motion(m, coast, number, before, r.mesh_acceleration, r.gear_acceleration)
+            end = pair_motion(m, coast, number, now, yp[V], yp[W])
+            taken = of_pair(m, h, start, end, taken)
+        m.state.energy[name] += taken[0]
+        m.state.energy.loss_error += taken[1]
+        return value + taken[0]
+
+    return book_pairs
+
+
+LOSING: Final = sum(1 << k for k, law in enumerate(PAIR_LAWS) if law.losses)
+"""Of `pair_laws`: those with a loss."""
+_losses = in_turn(tuple(_where_it_acts(law, _booking(law)) for law in PAIR_LAWS if law.losses))
+
+
+@compiled_once(SOLVER)
+def book_losses_of_mesh(m: Model, h: float, y: Floats, yp: Floats, value: float) -> float:
+    """Book what laws of a mesh take in a step that began where ``m.work.resistance`` says, and add it."""
+    return _losses(m, h, y, yp, value)
