@@ -31,7 +31,7 @@ LIGHT = {
     "validity": "from gearidae.runs.kept_validity import validity_of; assert len(validity_of(ds)) == 17",
     "accessor": "ds.gearidae.scene; ds.gearidae.verdicts(); ds.gearidae.to_dataframe(); ds.gearidae.events()",
     "chain": "gd.concat([ds.isel(event=slice(0))], 'time')",
-    "checkpoints": "from gearidae.archive import GrowingArchive",
+    "checkpoints": "from gearidae.archive import RunJournal",
     "laws": "from gearidae.laws.shafts import SHAFT_LAWS, driving_force; assert SHAFT_LAWS[0].name == 'constant'",
 }
 

@@ -105,7 +105,7 @@ def test_a_flipped_bit_is_named(archives, kind):
 
 
 def test_a_flipped_bit_is_named_where_the_file_is_read_when_used(archives, monkeypatch, capfd, tmp_path):
-    monkeypatch.setattr(netcdf_module, "_LAZY_ABOVE", 0)
+    monkeypatch.setattr(netcdf_module, "LONGEST_WHOLE", 0)
     damaged = flipped(archives["single"], first_bytes(archives["single"])["mesh_force"], 3)
     with gd.open_archive(damaged) as ds:
         assert np.isfinite(ds.gear_speed.values).all()

@@ -65,15 +65,10 @@ def test_an_archive_can_be_opened_again_after_an_interrupt(ds, tmp_path, monkeyp
 
 
 def test_an_interrupt_at_the_end_of_a_run_leaves_its_archive_finished(tmp_path, monkeypatch):
-    """In the definition of the final form, where it once left a lock taken that closing the file waited for."""
-    path, real, calls = tmp_path / "roller.nc", xr.Dataset.to_netcdf, []
-
-    def second(*arguments, **options):
-        calls.append(1)
-        return (interrupting(real) if len(calls) == 2 else real)(*arguments, **options)
-
+    """While the archive is written, where it once left a lock taken that closing the file waited for."""
+    path = tmp_path / "roller.nc"
     with monkeypatch.context() as patched:
-        patched.setattr(xr.Dataset, "to_netcdf", second)
+        patched.setattr(xr.Dataset, "to_netcdf", interrupting(xr.Dataset.to_netcdf))
         with pytest.raises(KeyboardInterrupt):
             gd.simulate(gd.preset("roller_slow"), samples=11, archive=path)
     resumed = gd.simulate(gd.preset("roller_slow"), samples=11, archive=path, resume=True)

@@ -98,7 +98,7 @@ def test_all_large_variables_are_compressed_unless_speed_is_wanted(compress, lar
 
 
 def test_large_archives_are_read_when_used(single, tmp_path, monkeypatch):
-    monkeypatch.setattr(netcdf_module, "_LAZY_ABOVE", 0)
+    monkeypatch.setattr(netcdf_module, "LONGEST_WHOLE", 0)
     save(single, tmp_path / "run.nc")
     with gd.open_archive(tmp_path / "run.nc") as ds:
         assert not ds.gear_speed.variable._in_memory
@@ -112,11 +112,11 @@ def test_a_file_that_is_replaced_while_it_is_opened_is_opened_again(single, tmp_
     save(single, finished)
     opened = netcdf_module._opened
 
-    def meets_another_file(source, commits):
+    def meets_another_file(source):
         if finished.exists():
             finished.replace(path)
             raise OSError("NetCDF: Unknown file format")
-        return opened(source, commits)
+        return opened(source)
 
     monkeypatch.setattr(netcdf_module, "_opened", meets_another_file)
     xr.testing.assert_identical(gd.open_archive(path), single)

@@ -67,7 +67,7 @@ def test_a_damaged_balance_is_refused(text, tmp_path):
 
 def test_energies_of_an_unfinished_run_are_those_of_its_checkpoint(tmp_path, monkeypatch):
     """So that its balance closes, as that of a run that has ended."""
-    monkeypatch.setattr("gearidae.archive.growing.CHECKPOINT_SECONDS", 0.0)
+    monkeypatch.setattr("gearidae.archive.unfinished.CHECKPOINT_SECONDS", 0.0)
     scene = LOW.replace({"run.duration": "20 ms", "run.checkpoints": ["5 ms", "10 ms"]})
 
     def interrupt(block):

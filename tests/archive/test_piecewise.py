@@ -5,9 +5,12 @@ The pieces are made small here, and every read of the file is watched; the large
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from importlib import import_module
+from itertools import pairwise
 
+import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
@@ -15,16 +18,19 @@ from xarray.backends.netCDF4_ import NetCDF4ArrayWrapper
 
 import gearidae as gd
 from gearidae.analysis.verdict import outcomes
-from gearidae.archive import netcdf, pieces, save, time_index, to_dataset
+from gearidae.archive import definition, netcdf, pieces, save, time_index, to_dataset, unfinished
 from gearidae.archive import run_summary as summary_module
-from gearidae.archive.growing import GrowingArchive
+from gearidae.archive.rows import DIMS
+from gearidae.archive.unfinished import RunJournal
 from gearidae.drawing import style
 from gearidae.plot import spectra
+from gearidae.records import Block, Events, Passages, Statistics
 from gearidae.report import build_report, series
 from gearidae.report.teeth import pack_runs
 from same import assert_same
 
 page_module = import_module("gearidae.report.page")
+NOTHING = {"time": np.empty(0), "samples": {}, "events": Events.none(), "passages": Passages.none()}
 SAMPLES, PIECE, ANALYSED, DRAWN = 10_007, 512, 2_048, 200
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.samples": SAMPLES})
 
@@ -33,8 +39,10 @@ LOW = gd.preset("teodorescu2009_low_speed").replace({"run.samples": SAMPLES})
 def lengths(monkeypatch):
     """Make pieces small, and note how many values each read of a file fetches."""
     for module, name, value in (
-        (netcdf, "_LAZY_ABOVE", 0),
+        (netcdf, "LONGEST_WHOLE", 0),
+        (definition, "LONGEST_WHOLE", 0),
         (netcdf, "LARGEST_IN_MEMORY", PIECE),
+        (unfinished, "LARGEST_IN_MEMORY", PIECE),
         (time_index, "LARGEST_IN_MEMORY", PIECE),
         (pieces, "PIECE", PIECE),
         (style, "PIECE", PIECE),
@@ -97,18 +105,57 @@ def test_opening_reads_next_to_nothing(long, lengths):
     assert sum(lengths) < 200
 
 
-def test_a_growing_archive(make_solution, tmp_path, lengths):
-    """The same holds of a run under way; of a short one nothing stays behind in the file."""
-    template = to_dataset(LOW, make_solution(LOW)).isel(time=slice(0), event=slice(0), passage=slice(0))
-    path = tmp_path / "run.nc"
-    with GrowingArchive.create(path, template, SAMPLES, 0.3) as archive:
-        archive._write("gear_speed", 0, np.ones(SAMPLES))
-        archive.lengths = {**archive.lengths, "time": SAMPLES}
-        archive._commit()
-    with gd.open_archive(path) as opened:
-        assert opened.sizes["time"] == SAMPLES
+def test_the_journal_of_a_run(make_solution, tmp_path, lengths, monkeypatch):
+    """The same holds of a run under way, however its blocks are cut; written from there, it is the archive."""
+    solution = make_solution(LOW)
+    whole = to_dataset(LOW, solution)
+    template = to_dataset(LOW, replace(solution, **NOTHING))
+    rows, events, passages = (
+        np.stack(list(solution.samples.values()), axis=1),
+        solution.events.table(),
+        solution.passages.table(),
+    )
+    monkeypatch.setattr(unfinished, "FRAME_SHARE", 0.0)
+    cuts = [0, 1, 400, 400, 777, 5_000, SAMPLES]
+    with RunJournal.create(tmp_path / "run.nc", template.attrs) as journal:
+        for number, (first, last) in enumerate(pairwise(cuts)):
+            ends = [len(table) * (number + 1) // (len(cuts) - 1) for table in (events, passages)]
+            begins = [len(table) * number // (len(cuts) - 1) for table in (events, passages)]
+            block = Block(
+                rows[first:last],
+                events[begins[0] : ends[0]],
+                0.1,
+                passages=passages[begins[1] : ends[1]],
+            )
+            journal.take(block, Statistics(), 0.0)
+        save(journal.filled(whole.isel(time=slice(0), event=slice(0), passage=slice(0))), tmp_path / "end.nc")
+    with gd.open_archive(tmp_path / "run.nc") as opened:
         assert opened.attrs["status"] == "interrupted"
-        assert max(lengths) <= PIECE
+        assert isinstance(opened.xindexes["time"], time_index.TimeIndex)
+        for name in (
+            name for name, variable in whole.variables.items() if {*variable.dims} & {"time", *DIMS}
+        ):
+            np.testing.assert_array_equal(opened[name], whole[name])
+            assert opened[name].dtype == whole[name].dtype
+        for key in (3, -1, slice(390, 410), slice(None, None, 600), slice(9000, 20, -7), [5, 4_999, 5_000]):
+            np.testing.assert_array_equal(opened.gear_speed[key], whole.gear_speed[key])
+    save(whole, tmp_path / "whole.nc")
+    for ds in (written := [gd.open_archive(tmp_path / name) for name in ("end.nc", "whole.nc")]):
+        ds.load()
+    xr.testing.assert_identical(*written)
+    monkeypatch.setattr(definition, "LONGEST_WHOLE", 2**30)  # the same by xarray alone
+    save(whole, tmp_path / "at_once.nc")
+    with netCDF4.Dataset(tmp_path / "end.nc") as ours, netCDF4.Dataset(tmp_path / "at_once.nc") as theirs:
+        assert {*ours.variables} == {*theirs.variables}
+        for name, variable in ours.variables.items():
+            other = theirs[name]
+            assert (variable.dtype, variable.shape, variable.chunking(), variable.filters()) == (
+                other.dtype,
+                other.shape,
+                other.chunking(),
+                other.filters(),
+            ), name
+            assert variable.ncattrs() == other.ncattrs()
 
 
 @pytest.mark.parametrize("size", [1, 7, 512, 10**6])

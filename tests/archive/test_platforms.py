@@ -25,9 +25,9 @@ if "sched_getaffinity" in lacking and hasattr(os, "process_cpu_count"):  # of Py
     os.process_cpu_count = os.cpu_count
 
 import gearidae as gd
-from gearidae.archive import growing
+from gearidae.archive import unfinished
 
-growing.CHECKPOINT_SECONDS = 0.0
+unfinished.CHECKPOINT_SECONDS = unfinished.CHECKPOINT_SHARE = 0.0
 scene = gd.preset("roller_slow").replace({"run.samples": 101})
 ds = gd.simulate(scene, archive=path, backend="sksundae")
 assert ds.attrs["status"] == "finished"

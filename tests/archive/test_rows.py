@@ -8,7 +8,6 @@ import xarray as xr
 
 import gearidae as gd
 from gearidae.archive import combine, to_dataset
-from gearidae.archive.commits import with_lengths
 from gearidae.archive.keep import read_keep
 from gearidae.archive.rows import rows_from
 from gearidae.archive.select import runs
@@ -103,15 +102,6 @@ def test_archives_without_passages_open(make_solution, tmp_path):
     ds = to_dataset(LOW, make_solution(LOW)).drop_dims("passage").drop_vars("event_force")
     gd.save(ds, tmp_path / "old.nc")
     xr.testing.assert_identical(gd.open_archive(tmp_path / "old.nc"), ds)
-
-
-def test_commits_of_older_versions_are_read():
-    assert with_lengths({"samples": 3, "events": 4, "number": 1}) == {
-        "lengths": {"time": 3, "event": 4},
-        "number": 1,
-    }
-    now = {"lengths": {"time": 3, "event": 4, "passage": 2}}
-    assert with_lengths(dict(now)) == now
 
 
 def test_pieces_of_a_chain_have_their_passages_cut(make_solution):

@@ -187,7 +187,7 @@ def test_the_accessor_and_info_have_the_summary(tmp_path, capsys):
 
 def test_the_extremes_of_an_unfinished_run_are_those_of_its_newest_checkpoint(tmp_path, monkeypatch):
     """They are what the engine finds in the state that the archive carries, and the verdict rests on them."""
-    monkeypatch.setattr("gearidae.archive.growing.CHECKPOINT_SECONDS", 0.0)
+    monkeypatch.setattr("gearidae.archive.unfinished.CHECKPOINT_SECONDS", 0.0)
     kept = {"run.samples": "off", "run.checkpoints": ["0.1 s", "0.2 s"]}
     scene = LOW.replace({"coating.sam_fraction": 0.4} | kept)
     checkpoints = []

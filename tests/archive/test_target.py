@@ -17,11 +17,11 @@ import xarray as xr
 
 import gearidae as gd
 from gearidae.archive import check_target, save, target, to_dataset
+from gearidae.archive.journal import journal_of
 from gearidae.archive.lock import WriterLock, is_locked
 from gearidae.cli import main
 from gearidae.errors import DiskFullError
 from gearidae.report import write_report
-from gearidae.runs.run_cache import folder_beside
 from reference.small_studies import STUDIES
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 1e-3, "run.samples": 11})
@@ -150,7 +150,7 @@ def test_what_another_writes_is_refused_before_anything_runs(product, there, sin
 
 
 @pytest.mark.parametrize("other", ["sweep", "ensemble", "simulate", "save"])
-def test_a_sweep_keeps_its_archive_and_the_folder_beside_it(other, single, tmp_path):
+def test_a_sweep_keeps_its_archive_and_the_journal_beside_it(other, single, tmp_path):
     """Others in another thread, as they may do it in another process."""
     path, refused = tmp_path / "out.nc", []
 
@@ -165,7 +165,7 @@ def test_a_sweep_keeps_its_archive_and_the_folder_beside_it(other, single, tmp_p
             thread = threading.Thread(target=attempt)
             thread.start()
             thread.join()
-            assert any(folder_beside(path).iterdir())
+            assert journal_of(path).exists()
 
     ds = gd.sweep(LOW, FRACTIONS, archive=path, jobs=1, progress=look)
     assert len(refused) == 2
@@ -284,7 +284,7 @@ def test_a_study_without_room_for_its_file_says_so(name, tmp_path):
             STUDIES[name](tmp_path / "out.nc", jobs=1)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
-    assert [path.name for path in tmp_path.iterdir()] in ([], ["out.nc.runs"])
+    assert [path.name for path in tmp_path.iterdir()] in ([], ["out.nc.journal"])
 
 
 def test_a_library_that_calls_a_full_disk_otherwise(single, tmp_path, monkeypatch):

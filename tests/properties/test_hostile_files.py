@@ -10,13 +10,13 @@ import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
+from gearidae.archive.store import Store
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import gearidae as gd
 from gearidae.analysis.measured import read_signal
 from gearidae.archive import growing, open_archive
-from gearidae.archive.store import Store
 from gearidae.cli import main
 from gearidae.engine.integrate import portable
 from gearidae.errors import SceneError

@@ -11,11 +11,11 @@ if TYPE_CHECKING:
     from gearidae.archive.dataset import dimension_names as dimension_names
     from gearidae.archive.dataset import reached as reached
     from gearidae.archive.dataset import to_dataset as to_dataset
-    from gearidae.archive.growing import GrowingArchive as GrowingArchive
     from gearidae.archive.netcdf import open_archive as open_archive
     from gearidae.archive.netcdf import save as save
     from gearidae.archive.provenance import SCHEMA_VERSION as SCHEMA_VERSION
     from gearidae.archive.target import check_target as check_target
+    from gearidae.archive.unfinished import RunJournal as RunJournal
     from gearidae.archive.variables import Variable as Variable
 
 __getattr__, __dir__, __all__ = lazy_names(__name__)

@@ -1,20 +1,20 @@
-"""The definitions of an archive without its data: the same variables and attributes at whatever length.
+"""How a dataset is put into a netCDF4 file: whole, or piece by piece where it is long.
 
-xarray decides how a dataset is put into a file (names, attributes, coordinates, fill values); it is asked once, with
-a dataset of no length, and its answer is repeated at the length wanted.
+xarray decides on names, attributes, coordinates and fill values. Of a long dataset it is asked without data, and its
+answer is repeated at the length wanted.
 """
 
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from gearidae.archive.library import Form, opened, uninterrupted
+from gearidae.archive.library import opened, uninterrupted
+from gearidae.archive.rows import DIMS
 
 _COMPRESSED_FROM = 2**12
 """Variables of this size [bytes] are compressed: a block of the disk, below which nothing is won."""
@@ -22,67 +22,85 @@ _OWN_CHUNKS_ABOVE = 2**16
 """Variables of a sweep that are larger than this [bytes] have chunks for each run."""
 CHUNK = 2**20
 """Largest chunk [bytes]."""
-_ROOM = "room"
-_HEADER = 2**17
-"""Bytes left for the header of a file in the classic format: where it outgrows its place, all data are moved."""
+LONGEST_WHOLE = 128 * 2**20
+"""Datasets larger than this [bytes in memory] are written, and read, piece by piece."""
+_ROWS = 2**20
+"""Values written at a time."""
+_GROWING = ("time", *DIMS)
+"""Dimensions that may be long."""
 
 
 @uninterrupted()
-def define(
-    template: xr.Dataset,
-    path: Path,
-    sizes: Mapping[str, int],
-    *,
-    in_place: bool = False,
-    compress: bool = True,
-) -> None:
-    """Create a netCDF file that holds a dataset's definitions at other lengths.
+def write(ds: xr.Dataset, path: Path, *, compress: bool = True) -> None:
+    """Write a dataset into a netCDF4 file; what it reads from a file itself is in memory piece by piece.
 
     Parameters
     ----------
-    template : xarray.Dataset
-        A dataset in which the dimensions in `sizes` have length 0.
+    ds : xarray.Dataset
+        Of which a single run may be long.
     path : Path
         File to create.
-    sizes : mapping of str to int
-        Lengths of the dimensions.
-    in_place : bool, optional
-        Whether the file is written while others read it: in netCDF's classic format (CDF-5), whose structure is its
-        beginning and never changes, and filled with what stands for nothing. By default netCDF4, in chunks.
     compress : bool, optional
-        Whether large variables of a netCDF4 file are compressed.
+        Whether large variables are compressed.
     """
+    ds = ds.drop_encoding()
+    if ds.nbytes <= LONGEST_WHOLE or "swept" in ds.attrs:
+        ds.to_netcdf(path, engine="netcdf4", format="NETCDF4", encoding=_encoding(ds, compress=compress))
+        return
+    long = {dim: ds.sizes[dim] for dim in _GROWING if dim in ds.sizes}
     with tempfile.TemporaryDirectory() as folder:
         sample = Path(folder) / "template.nc"
-        encoding = {name: text_storage(values) for name, values in template.variables.items()}
-        for name in template.coords:
-            encoding[name]["_FillValue"] = None
-        template.drop_encoding().to_netcdf(sample, engine="netcdf4", encoding=encoding)
-        form: Form = "NETCDF3_64BIT_DATA" if in_place else "NETCDF4"
-        with opened(sample) as old, opened(path, "x", form) as new:
-            old.set_auto_chartostring(False)
-            new.set_auto_chartostring(False)
-            lengths = {name: len(dimension) for name, dimension in old.dimensions.items()} | dict(sizes)
-            new.setncatts({_ROOM: " " * _HEADER} if in_place else {})
-            for name, size in lengths.items():
-                new.createDimension(name, size)
+        nothing = ds.isel({dim: slice(0) for dim in long})
+        nothing.to_netcdf(sample, engine="netcdf4", encoding=_encoding(nothing, compress=compress))
+        with opened(sample) as old, opened(path, "x") as new:
+            for file in (old, new):
+                file.set_auto_maskandscale(False)
+                file.set_auto_chartostring(False)
+            for name, dimension in old.dimensions.items():
+                new.createDimension(name, long.get(name, len(dimension)))
             for name, variable in old.variables.items():
                 attributes = {key: variable.getncattr(key) for key in variable.ncattrs()}
                 fill = attributes.pop("_FillValue", None)
+                grows = bool({*variable.dimensions} & {*long})
                 storage: dict[str, Any] = {}
-                if not in_place and variable.dtype is not str:
-                    shape = tuple(lengths[dim] for dim in variable.dimensions)
+                if variable.dtype is not str:
+                    shape = tuple(long.get(dim, len(old.dimensions[dim])) for dim in variable.dimensions)
                     nbytes = variable.dtype.itemsize * int(np.prod(shape))
                     storage = chunked(variable.dtype, shape, nbytes, compress=compress)
                 made = new.createVariable(
                     name, variable.dtype, variable.dimensions, fill_value=fill, **storage
                 )
-                if _ROOM in new.ncattrs():  # data begin behind it from now on
-                    new.delncattr(_ROOM)
                 made.setncatts(attributes)
-                if not set(variable.dimensions) & set(sizes):  # it is all there
+                if grows:
+                    _copy(ds.variables[name], made)
+                else:
                     made[...] = variable[...]
             new.setncatts({name: old.getncattr(name) for name in old.ncattrs()})
+
+
+def _copy(values: xr.Variable, made: Any) -> None:
+    """Copy a long variable into one of a file, whole chunks at a time."""
+    chunks, step = made.chunking(), _ROWS
+    if isinstance(chunks, list):
+        step = max(_ROWS // chunks[0], 1) * chunks[0]
+        made.set_var_chunk_cache(size=0)  # whole chunks come once each: nothing to remember
+    for start in range(0, values.size, step):
+        made[start : start + step] = values[start : start + step].values
+
+
+def _encoding(ds: xr.Dataset, *, compress: bool) -> dict[str, dict[str, Any]]:
+    """How to store each variable."""
+    encoding: dict[str, dict[str, Any]] = {}
+    for name, variable in ds.variables.items():
+        entry = text_storage(variable)
+        entry |= chunked(variable.dtype, variable.shape, variable.nbytes, compress=compress)
+        # The reason of `text_storage` holds for several texts too; the library cannot store none as characters.
+        if variable.dtype.kind in "OU" and variable.size:
+            entry["dtype"] = "S1"
+        if variable.dtype.kind == "f" and name in ds.coords:
+            entry["_FillValue"] = None  # coordinates have no gaps
+        encoding[str(name)] = entry
+    return encoding
 
 
 def text_storage(variable: xr.Variable) -> dict[str, Any]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import secrets
+import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -37,6 +38,18 @@ def no_room(error: Exception, part: Path) -> str:
     except OSError as refused:
         return (refused.strerror or "") if refused.errno in _NO_ROOM else ""
     return ""
+
+
+def refuse_too_small(folder: Path, nbytes: int) -> None:
+    """Refuse a disk that has no room for so many bytes in a folder.
+
+    Raises
+    ------
+    OSError
+        As the system says it when it is full.
+    """
+    if shutil.disk_usage(folder).free < nbytes:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
 
 @contextmanager

@@ -12,12 +12,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
-from typing import Any, Final, Literal, TypeAlias
+from typing import Any, Final, Literal
 
 import netCDF4
 import xarray as xr
 
-from gearidae.archive.commits import check_bytes
 from gearidae.archive.integrity import check_content, check_seal
 from gearidae.errors import STOPS
 
@@ -31,8 +30,6 @@ if hasattr(os, "register_at_fork"):
     os.register_at_fork(
         before=LIBRARY.acquire, after_in_parent=LIBRARY.release, after_in_child=LIBRARY.release
     )
-
-Form: TypeAlias = Literal["NETCDF4", "NETCDF3_64BIT_DATA"]
 
 _MOST_SHRUNK: Final = 1032
 """Bytes that one byte in a file can stand for: deflate, which HDF5 compresses by, shrinks nothing further."""
@@ -64,21 +61,17 @@ def uninterrupted() -> Iterator[None]:
 
 
 @contextmanager
-def opened(
-    path: Path, mode: Literal["r", "a", "x"] = "r", form: Form = "NETCDF4"
-) -> Iterator[netCDF4.Dataset]:
+def opened(path: Path, mode: Literal["r", "x"] = "r") -> Iterator[netCDF4.Dataset]:
     """Open a netCDF file of ours, with `LIBRARY` held.
 
     Parameters
     ----------
-    mode : {"r", "a", "x"}, optional
-        To read, to write into it, or to make it.
-    form : str, optional
-        The format of a file that is made.
+    mode : {"r", "x"}, optional
+        To read, or to make it.
     """
     with LIBRARY:
         await_lock(path)
-        file = netCDF4.Dataset(path, mode, format=form, keepweakref=True)
+        file = netCDF4.Dataset(path, mode, keepweakref=True)
         try:
             yield file
         finally:
@@ -102,10 +95,17 @@ def close(file: netCDF4.Dataset, *, written: bool) -> None:
 
 
 def loaded(path: Path) -> xr.Dataset:
-    """Read any netCDF file into memory; a damaged one may make the netCDF stack raise any exception."""
+    """Read any netCDF file into memory; a damaged one may make the netCDF stack raise any exception.
+
+    The classic format, which has no checksums, is left to scipy: netCDF's library may end the program there.
+    """
+    with path.open("rb") as file:
+        is_classic = file.read(3) == b"CDF"
+    if is_classic:
+        with xr.open_dataset(path, decode_times=False, engine="scipy") as file:
+            return file.load()
     with uninterrupted():
         check_seal(path)
-        check_bytes(path)
         await_lock(path)
         with netCDF4.Dataset(path) as declared:
             check_size(declared, path)

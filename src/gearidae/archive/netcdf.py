@@ -21,10 +21,10 @@ from xarray.core.indexing import ExplicitIndexer, LazilyIndexedArray
 
 from gearidae.archive.agreement import disagreement
 from gearidae.archive.attributes import readable_scene, wrong_attribute
-from gearidae.archive.commits import RECORDS, Commit, check_bytes
-from gearidae.archive.definition import CHUNK, chunked, text_storage
+from gearidae.archive.definition import CHUNK, LONGEST_WHOLE, write
 from gearidae.archive.disk import disk_errors
 from gearidae.archive.integrity import check_content, check_seal, seal, with_checksums
+from gearidae.archive.journal import SIGNATURE, journal_of
 from gearidae.archive.keep import kept_in
 from gearidae.archive.library import await_lock, check_size, uninterrupted
 from gearidae.archive.lock import is_locked
@@ -33,19 +33,19 @@ from gearidae.archive.provenance import SCHEMA_VERSION
 from gearidae.archive.rows import kinds_in, needed
 from gearidae.archive.target import as_path, whole_file
 from gearidae.archive.time_index import LARGEST_IN_MEMORY, in_memory, with_times
-from gearidae.archive.unfinished import intact, is_growing, trimmed
+from gearidae.archive.unfinished import RunJournal
 from gearidae.archive.variables import ENERGY_BALANCE, OF_SWEPT_RUN
 from gearidae.errors import SceneError
 from gearidae.records import GEAR_SAMPLES, ROLLER_SAMPLES, sampled_columns
 from gearidae.records.energy import TERMS
 from gearidae.scene import Scene
 
-_SIGNATURES = (b"\x89HDF\r\n\x1a\n", b"CDF\x05")
-"""How archives begin: finished ones, and those of runs under way."""
+_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+"""How archives begin."""
+_HEADER = 2**12
+"""Bytes in which an unfinished archive of version 0.3.0, in netCDF's classic format, names its dimensions."""
 _JUDGED = ("verdict", "impacts")
 """What archives of runs that kept parts only have had from the first."""
-_LAZY_ABOVE = 128 * 2**20
-"""Archives larger than this [bytes in memory] are read piece by piece as they are used."""
 
 
 class OtherFileError(SceneError):
@@ -84,9 +84,7 @@ def save(
         If the target is refused (see `check_target`) or the disk does not take the data.
     """
     with whole_file(path, overwrite=overwrite) as part, disk_errors():
-        encoding = _encoding(ds, compress=compress)
-        whole = with_checksums(ds).drop_encoding()
-        whole.to_netcdf(part, engine="netcdf4", format="NETCDF4", encoding=encoding)
+        write(with_checksums(ds), part, compress=compress)
         seal(part)
     return Path(os.path.realpath(path))
 
@@ -117,35 +115,65 @@ def open_archive(path: str | os.PathLike[str]) -> xr.Dataset:
     source = as_path(path)
     if source.exists() and not (source.is_file() or source.is_dir()):
         raise SceneError("archive", path, "is no file that can be read")
+    running = is_locked(
+        source
+    )  # asked first: a run that ends meanwhile puts its archive in the journal's place
+    if not source.exists() and journal_of(source).exists():
+        return _unfinished(journal_of(source), path, running=running)
     try:
         with source.open("rb") as file:
-            head, looked_at = file.read(8), os.fstat(file.fileno())
+            head, looked_at = file.read(_HEADER), os.fstat(file.fileno())
     except OSError as error:
         raise SceneError("archive", path, f"cannot be read ({error.strerror})") from error
-    if not head.startswith(_SIGNATURES):
+    if head.startswith(SIGNATURE[:-2]):
+        return _unfinished(source, path, running=is_locked(source.with_suffix("")))
+    if head.startswith(b"CDF") and b"record_byte" in head:
+        raise SceneError(
+            "archive", path, "is of a run that gearidae 0.3.0 has not finished: finish it with 0.3.0"
+        )
+    if not head.startswith(_SIGNATURE):
         raise SceneError("archive", path, "is not a netCDF4 file")
-    running = is_locked(source)  # asked first: a run that ends meanwhile puts another file in its place
     try:
         check_seal(source)
     except ValueError as error:
         raise SceneError("archive", path, f"is damaged: {error}") from None
     try:
-        commits = check_bytes(source)
-        ds, commit = _opened(source, commits)
+        ds = _opened(source)
     except SceneError:
         raise
     except Exception as error:  # a damaged file can make the netCDF stack raise almost anything
         if source.exists() and not os.path.samestat(looked_at, source.stat()):
             return open_archive(path)  # the netCDF library met the finished file half-way
         raise SceneError("archive", path, f"is damaged or not a netCDF4 file ({error})") from error
+    return _checked(ds, path)
+
+
+def _unfinished(journal: Path, path: str | os.PathLike[str], *, running: bool) -> xr.Dataset:
+    """Read the journal of an archive that is not finished."""
+    try:
+        return _checked(RunJournal(journal).dataset(running=running), path)
+    except FileNotFoundError as error:
+        if not as_path(path).exists():
+            raise SceneError("archive", path, f"cannot be read ({error.strerror})") from error
+        return open_archive(path)  # which has been finished since
+    except SceneError:
+        raise
+    except OSError as error:
+        raise SceneError("archive", path, f"cannot be read ({error.strerror or error})") from error
+    except ValueError as error:
+        raise SceneError(
+            "archive", path, f"is not finished, and {journal.name} is no run that can be read: {error}"
+        ) from None
+
+
+def _checked(ds: xr.Dataset, path: str | os.PathLike[str]) -> xr.Dataset:
+    """Look at a dataset that has been opened, and read it whole if it is not long."""
     try:
         ds.attrs.pop("checksums", None)  # of version 0.1.0
         check_content(ds)
         _check_layout(ds, path)
-        if is_growing(ds):
-            ds = trimmed(ds, source, commit, running=running)
         ds = converted(ds)
-        at_once = ds.nbytes <= _LAZY_ABOVE
+        at_once = ds.nbytes <= LONGEST_WHOLE
         ds = in_memory(ds) if at_once else ds
         if wrong := disagreement(ds, times=at_once):
             raise SceneError("archive", path, f"is damaged: {wrong}")
@@ -160,24 +188,22 @@ def open_archive(path: str | os.PathLike[str]) -> xr.Dataset:
     return ds
 
 
-def _opened(source: Path, commits: list[Commit]) -> tuple[xr.Dataset, Commit | None]:
-    """Open a file; but for the checksums of an unfinished one, no more is read than it takes to describe it."""
+def _opened(source: Path) -> xr.Dataset:
+    """Open a file; no more is read than it takes to describe it."""
     await_lock(source)
     store = CheckedStore.open(str(source))  # type: ignore[no-untyped-call]
     try:
         check_size(store.ds, source)
-        unfinished = bool(commits) and RECORDS in store.ds.variables  # it may have ended since
-        commit = intact(store.ds, commits, source) if unfinished else None
-        return _described(store, source), commit
+        return _described(store)
     except BaseException:
         store.close()
         raise
 
 
-def _described(store: CheckedStore, source: Path) -> xr.Dataset:
+def _described(store: CheckedStore) -> xr.Dataset:
     """Make the dataset of an open file."""
     variables = store.ds.variables
-    if sum(8 * math.prod(variable.shape) for variable in variables.values()) <= _LAZY_ABOVE:
+    if sum(8 * math.prod(variable.shape) for variable in variables.values()) <= LONGEST_WHOLE:
         return xr.open_dataset(store, decode_times=False)
     for variable in variables.values():
         if isinstance(variable.chunking(), list):
@@ -231,21 +257,6 @@ def _expected(ds: xr.Dataset, scene: dict[str, Any]) -> tuple[str, ...]:
         raise SceneError("archive", ds.encoding.get("source", ""), f"is damaged: {error}") from None
     some = tuple(name for name in sampled if keep.holds(name))
     return (*(("time",) if some else ()), *some, *filter(keep.holds, rows), "status", *_JUDGED)
-
-
-def _encoding(ds: xr.Dataset, *, compress: bool) -> dict[str, dict[str, Any]]:
-    """How to store each variable."""
-    encoding: dict[str, dict[str, Any]] = {}
-    for name, variable in ds.variables.items():
-        entry = text_storage(variable)
-        entry |= chunked(variable.dtype, variable.shape, variable.nbytes, compress=compress)
-        # The reason of `text_storage` holds for several texts too; the library cannot store none as characters.
-        if variable.dtype.kind in "OU" and variable.size:
-            entry["dtype"] = "S1"
-        if variable.dtype.kind == "f" and name in ds.coords:
-            entry["_FillValue"] = None  # coordinates have no gaps
-        encoding[str(name)] = entry
-    return encoding
 
 
 class CheckedStore(xr.backends.NetCDF4DataStore):

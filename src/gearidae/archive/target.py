@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Final
 
 from gearidae.archive.disk import DiskError, no_room, part_beside, sync
+from gearidae.archive.journal import journal_of
 from gearidae.archive.lock import claimed
 from gearidae.errors import DiskFullError, SceneError
 
@@ -136,16 +137,25 @@ def claims_target(
         As `check_target` does, or if another process or thread is writing the file.
     """
     with claimed(check_target(path, overwrite=True, name=name), name):
-        yield check_target(path, overwrite=overwrite, name=name, remedy=remedy)
+        target = check_target(path, overwrite=overwrite, name=name, remedy=remedy)
+        if not overwrite and (journal := journal_of(target)).exists():
+            allowed = (
+                f"was cut off, what there is of it is in {journal.name}: go on with --resume (resume=True), "
+                "start anew with --overwrite (overwrite=True), or name another"
+            )
+            raise SceneError(name, path, allowed)
+        yield target
 
 
 @contextmanager
-def claims_output(archive: str | os.PathLike[str]) -> Iterator[Path]:
-    """Hold the right to write a study's archive until the block is left; inside, `whole_file` needs no other.
+def claims_output(archive: str | os.PathLike[str], *, overwrite: bool = True) -> Iterator[Path]:
+    """Hold the right to write an archive until the block is left; inside, `whole_file` needs no other.
 
     Parameters
     ----------
     archive : path-like
+    overwrite : bool, optional
+        As for `check_target`.
 
     Yields
     ------
@@ -157,7 +167,7 @@ def claims_output(archive: str | os.PathLike[str]) -> Iterator[Path]:
     SceneError
         As `claims_target` does.
     """
-    with claims_target(archive, overwrite=True) as target:
+    with claims_target(archive, overwrite=overwrite) as target:
         token = _CLAIMED.set(_CLAIMED.get() | {target})
         try:
             yield target

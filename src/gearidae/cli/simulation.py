@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import gearidae as gd
 from gearidae.analysis.verdict.headline import headline
 from gearidae.archive import check_target
+from gearidae.archive.journal import journal_of
 from gearidae.archive.select import run_value, runs
 from gearidae.cli.case import check_dask, default_output, read_scene
 from gearidae.cli.codes import DONE, UNFINISHED
@@ -17,7 +18,6 @@ from gearidae.cli.output import is_quiet, print_error, print_line
 from gearidae.cli.tables import label_text, show_outcomes, show_summary
 from gearidae.errors import SceneError, SolverError
 from gearidae.runs.executors import check_jobs, dask_executor
-from gearidae.runs.run_cache import folder_beside
 from gearidae.scene.pairs import sweep_values
 from gearidae.studies.announcement import grid_words
 
@@ -192,7 +192,7 @@ def announce(
     SceneError
         If `target` cannot be written.
     """
-    if not resume and not folder_beside(target).exists():
+    if not resume and not journal_of(target).exists():
         check_target(target, overwrite=overwrite)
     if words:
         print_line(f"{title} of {scene.name}: {words}")

@@ -6,7 +6,7 @@ import itertools
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypedDict, TypeVar
@@ -31,13 +31,16 @@ if TYPE_CHECKING:
 class Store(Protocol):
     """Results that are kept beside an archive until it is written."""
 
-    folder: Path
+    path: Path
 
     def count(self) -> int:
         """Count the results."""
 
     def remove(self, scenes: Sequence[Scene] | None = None, /) -> None:
         """Delete those of some scenes, or all."""
+
+    def close(self) -> None:
+        """Leave them as they are."""
 
 
 SideBySide: TypeAlias = Callable[..., Iterator[tuple["Solution", str]]]
@@ -195,8 +198,7 @@ def run_kept(
             raise SceneError("resume", True, "needs an archive: finished runs are kept beside it")
         with interruptible(None, so_far, attributes):
             return work(None).assign_attrs(attributes)
-    with claims_output(execution.archive) as target:
-        store = make_store(target)
+    with claims_output(execution.archive) as target, closing(make_store(target)) as store:
         _begin(execution, store, scenes)
         if execution.resume and not store.count() and target.exists():
             whole = _whole(target, about, execution.driver, read or open_archive)
@@ -213,7 +215,7 @@ def run_kept(
         def cut_off(ds: xr.Dataset) -> xr.Dataset:
             return ds if prepared is None else keep(ds)
 
-        with interruptible(store.folder, so_far, attributes, cut_off):
+        with interruptible(store.path, so_far, attributes, cut_off):
             ds = keep(work(store).assign_attrs(attributes))
         store.remove(scenes)
     return ds
@@ -222,21 +224,22 @@ def run_kept(
 def _begin(execution: Execution, store: Store, scenes: Sequence[Scene] | None) -> None:
     """Refuse what is there already, or make room."""
     assert execution.archive is not None
-    count = store.count()
+    if isinstance(store, RunCache) and (execution.resume or not execution.overwrite):
+        store.refuse_others()
     if execution.resume:
-        if count and scenes is not None and isinstance(store, RunCache):
+        if isinstance(store, RunCache) and scenes is not None:
             store.note_strangers(scenes)
-    elif count and not execution.overwrite:
+    elif execution.overwrite:
+        store.remove()
+    elif count := store.count():
         raise SceneError(
             "archive",
             execution.archive,
-            f"was cut off, {count} of its runs are in {store.folder.name}: "
+            f"was cut off, {count} of its runs are in {store.path.name}: "
             "go on with --resume (resume=True), or start anew with --overwrite (overwrite=True)",
         )
-    elif count:
-        store.remove()
     else:
-        check_target(execution.archive, overwrite=execution.overwrite)
+        check_target(execution.archive)
 
 
 def _whole(
@@ -267,7 +270,7 @@ def _whole(
 
 @contextmanager
 def interruptible(
-    folder: Path | None = None,
+    path: Path | None = None,
     so_far: Callable[[], xr.Dataset] = xr.Dataset,
     about: Mapping[str, Any] | None = None,
     keep: Callable[[xr.Dataset], xr.Dataset] | None = None,
@@ -276,7 +279,7 @@ def interruptible(
 
     Parameters
     ----------
-    folder : Path, optional
+    path : Path, optional
         Where finished runs are kept; without one nothing can be resumed.
     so_far : callable, optional
         Makes the dataset of what has been found, if the interrupt does not carry it.
@@ -298,8 +301,8 @@ def interruptible(
         if keep is not None:
             keep(ds)
         where = "the error's dataset has what was found so far" if ds.sizes else "nothing of it is kept"
-        if folder is not None:
-            where = f"finished runs are kept in {folder}; go on with --resume (resume=True)"
+        if path is not None:
+            where = f"finished runs are kept in {path}; go on with --resume (resume=True)"
         raise Interrupted(where, ds) from None
 
 

@@ -1,40 +1,33 @@
-"""Finished runs of a sweep, kept on disk until the whole sweep is, so that it can go on where it was cut off."""
+"""Finished runs of a sweep or a study, kept in its journal until its archive is written, so that it can go on."""
 
 from __future__ import annotations
 
 import hashlib
 import json
-import re
 import warnings
 from array import array
 from collections.abc import Collection, Mapping
 from dataclasses import fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gearidae.archive.journal import Journal, journal_of
 from gearidae.archive.keep import EVERYTHING, OutputSelection
 from gearidae.archive.provenance import SCHEMA_VERSION, provenance
-from gearidae.archive.store import Store
 from gearidae.archive.variables import VERDICT
+from gearidae.errors import SceneError
 from gearidae.records import ROWS, EnergyBalance, Extremes, Solution, Statistics
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
-_LAYOUT = 8
-"""Version of the entries' layout."""
-_KEY: Final = re.compile(r"[0-9a-f]{64}")
-"""Keys of runs."""
+_LAYOUT = 9
+"""Version of what is kept of a run."""
 _STATISTICS = tuple(field.name for field in fields(Statistics) if field.name not in ("ending", "fold_gap"))
 """What is kept of the statistics; a run that is kept has finished."""
-
-
-def folder_beside(archive: Path) -> Path:
-    """Where the runs of an unfinished sweep are kept: ``OUT.nc.runs`` beside ``OUT.nc``."""
-    return Store(archive).folder
 
 
 def circumstances(scene: Scene, backend: str) -> dict[str, Any]:
@@ -67,37 +60,47 @@ def name_of(scene: Scene, about: Mapping[str, Any]) -> str:
 
 
 class RunCache:
-    """The finished runs of one sweep, in the `Store` beside its archive.
+    """The finished runs of one sweep, in the journal beside its archive.
 
-    Each is an entry under the hash of all that its result depends on: the scene (with its duration, samples and
+    Each is a frame under the hash of all that its result depends on: the scene (with its duration, samples and
     tolerance), the driver of the solver, and the versions of the software. Runs are not forced onto the disk, which
-    would take longer than many a run. Nothing in a file is ever executed.
+    would take longer than many a run.
 
     Parameters
     ----------
     archive : Path
-        Where the whole sweep is to go.
+        Where the whole sweep is to go; claimed by this process.
     scene : Scene
         Any scene of the sweep.
     backend : str
         The driver that runs, ``native`` or ``sksundae``.
     keep : OutputSelection, optional
         What each run leaves behind; by default everything.
+
+    Raises
+    ------
+    SceneError
+        If runs of version 0.3.0 are kept there, which it alone can read.
     """
 
     def __init__(self, archive: Path, scene: Scene, backend: str, keep: OutputSelection = EVERYTHING) -> None:
-        self._store = Store(archive)
-        self.folder = self._store.folder
+        self.path = journal_of(archive)
         self._circumstances = {
             "layout": _LAYOUT,
             **circumstances(scene, backend),
             **({} if keep.names is None else {"keep": keep.asked}),
         }
         self._warned = False
+        self._journal: Journal | None = None
+        self._runs: dict[str, int] = {}  # where each begins
+        self._obstacle = ""
+        _refuse_older(archive)
+        if self.path.exists():
+            self._open()
 
     def count(self) -> int:
         """Count the runs that are kept."""
-        return len(self._keys())
+        return len(self._runs)
 
     def key(self, scene: Scene) -> str:
         """Hash of a scene and of all else that its result depends on."""
@@ -113,45 +116,105 @@ class RunCache:
             "samples": np.stack([solution.time, *solution.samples.values()]),
             **{kind.field: getattr(solution, kind.field).table() for kind in ROWS},
         }
+        key = self.key(scene)
         try:
-            self._store.put(
-                self.key(scene), header, {name: table for name, table in tables.items() if table.size}
-            )
+            if self._journal is None:
+                self._journal = _begun(self.path)
+            self._runs[key] = self._journal.append({"key": key, **header}, tables).begin
         except OSError as error:
             if not self._warned:
-                warnings.warn(f"finished runs cannot be kept in {self.folder} ({error})", stacklevel=2)
+                warnings.warn(f"finished runs cannot be kept in {self.path} ({error})", stacklevel=2)
             self._warned = True
 
     def take(self, scene: Scene) -> tuple[Solution, dict[str, Any]] | None:
-        """Read a run back, with how it was judged; that is empty if it was not.
-
-        None, and a warning, if its file is damaged or not what its name says.
-        """
-        key = self.key(scene)
-        try:
-            entry = self._store.take(key)
-            return None if entry is None else _rebuilt(*entry)
-        except Exception as error:  # what a damaged file makes the libraries raise may be anything
-            path = self._store.path(key)
-            warnings.warn(f"{path} is ignored and its run computed again ({error})", stacklevel=2)
+        """Read a run back, with how it was judged; that is empty if it was not. None if it is not there."""
+        begin = self._runs.get(self.key(scene))
+        if begin is None or self._journal is None:
             return None
+        try:
+            frame = self._journal.frame(begin)
+            return _rebuilt(frame.header, {name: self._journal.table(frame, name) for name in frame.shapes})
+        except (
+            OSError,
+            KeyError,
+            TypeError,
+            ValueError,
+            AttributeError,
+        ) as error:  # of another layout, or cut since
+            warnings.warn(f"a run kept in {self.path} is ignored and computed again ({error})", stacklevel=2)
+            return None
+
+    def refuse_others(self) -> None:
+        """Raise a SceneError if something else is in the place of the journal."""
+        if self._obstacle:
+            allowed = f"{self._obstacle}: start anew with --overwrite (overwrite=True), or name another"
+            raise SceneError("archive", self.path.with_suffix(""), allowed)
 
     def note_strangers(self, scenes: Collection[Scene]) -> None:
         """Warn of kept runs that are none of these scenes."""
-        strangers = len(self._keys() - {self.key(scene) for scene in scenes})
+        strangers = len(self._runs.keys() - {self.key(scene) for scene in scenes})
         if strangers:
             warnings.warn(
-                f"{strangers} of the runs kept in {self.folder} are of other scenes, settings or versions; "
+                f"{strangers} of the runs kept in {self.path} are of other scenes, settings or versions; "
                 "they are ignored and left there",
                 stacklevel=2,
             )
 
     def remove(self, scenes: Collection[Scene] | None = None) -> None:
-        """Delete the kept runs of some scenes, or all of them, and the folder if nothing else is in it."""
-        self._store.remove(self._keys() if scenes is None else {self.key(scene) for scene in scenes})
+        """Delete the journal; if scenes are given, only where no other runs are kept in it."""
+        strangers = set() if scenes is None else self._runs.keys() - {self.key(scene) for scene in scenes}
+        self.close()
+        if not strangers:
+            self._runs, self._obstacle = {}, ""
+            if self.path.is_file():
+                self.path.unlink()
 
-    def _keys(self) -> set[str]:
-        return {key for key in self._store.entries() if _KEY.fullmatch(key)}
+    def close(self) -> None:
+        """Leave the runs as they are."""
+        if self._journal is not None:
+            self._journal.close()
+            self._journal = None
+
+    def _open(self) -> None:
+        """Find the runs in the journal that is there; those that are altered are warned of."""
+        try:
+            self._journal = Journal(self.path, "a")
+            frames = self._journal.frames()
+            head = next(frames, None)
+            if head is None or head.header.get("kind") != "runs":
+                raise ValueError("it is of a single run, or altered at its head")
+            altered = 0
+            for frame in frames:
+                if frame is None:
+                    altered += 1
+                else:
+                    self._runs[str(frame.header["key"])] = frame.begin
+        except (OSError, ValueError, KeyError) as error:
+            self.close()
+            self._obstacle = f"{self.path.name} beside it has no runs of a sweep or study ({error})"
+            return
+        if altered:
+            what = f"{altered} of the runs kept in {self.path} are damaged"
+            warnings.warn(f"{what}: they are ignored and computed again", stacklevel=2)
+
+
+def _begun(path: Path) -> Journal:
+    """Make the journal of a sweep or a study."""
+    journal = Journal(path, "w")
+    try:
+        journal.append({"kind": "runs"}, {})
+    except OSError:
+        journal.close()
+        raise
+    return journal
+
+
+def _refuse_older(archive: Path) -> None:
+    """Refuse to write where version 0.3.0 has kept what it has not finished."""
+    folder = archive.with_name(f"{archive.name}.runs")
+    if folder.is_dir() and any(folder.glob("*.npz")):
+        allowed = f"was begun by gearidae 0.3.0: finish it with 0.3.0, or delete the folder {folder.name}"
+        raise SceneError("archive", archive, allowed)
 
 
 def _header(solution: Solution, judged: dict[str, Any]) -> dict[str, Any]:

@@ -110,10 +110,10 @@ def simulate(
     log_doubts(scene)
     # xarray takes a third of a second to import, longer than most runs take: it is not waited for before one
     if archive is not None:
-        from gearidae.archive.target import claims_target
+        from gearidae.archive.target import claims_output
         from gearidae.runs.streaming import stream
 
-        with claims_target(archive, overwrite=overwrite or resume) as target:
+        with claims_output(archive, overwrite=overwrite or resume) as target:
             return stream(
                 scene,
                 target,

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import json
 import math
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from gearidae import __version__, engine
-from gearidae.archive import GrowingArchive, open_archive, to_dataset
-from gearidae.archive.checkpoint import Checkpoint, drop_checkpoints
-from gearidae.archive.disk import DiskError
-from gearidae.archive.unfinished import RESUMABLE
+from gearidae.archive import RunJournal, open_archive, save, to_dataset
+from gearidae.archive.definition import LONGEST_WHOLE
+from gearidae.archive.disk import DiskError, disk_errors, refuse_too_small
+from gearidae.archive.journal import journal_of
+from gearidae.archive.unfinished import RESUMABLE, Checkpoint
 from gearidae.engine.backend import statistics_of
 from gearidae.errors import Interrupted, SceneError, SolverError
 from gearidae.progress import RunProgress, run_progress
@@ -21,8 +23,11 @@ from gearidae.runs.kept_validity import with_validity
 from gearidae.runs.running import early_end, unsolved, watched
 from gearidae.runs.starting import started_attributes
 from gearidae.scene.differences import first_difference
+from gearidae.scene.sampled import columns_of
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     import xarray as xr
 
     from gearidae.engine import Ended
@@ -66,63 +71,88 @@ def stream(
     SceneError, SolverError, Interrupted
         As `gearidae.simulate` says.
     """
-    unfinished = _found(target, scene, start) if resume and target.exists() else None
-    if unfinished is not None and unfinished.attrs["status"] == "finished":
-        drop_checkpoints(target)  # a kill may have left one
-        return unfinished
-    if unfinished is not None:
-        backend = _same_backend(backend, str(unfinished.attrs["backend"]))
-        unfinished.close()
-    run = _Run(scene, target, engine.choose_backend(backend, scene.run.method), start)
-    with run.take_up() if unfinished is not None else run.begin() as archive:
+    beside = journal_of(target)
+    if resume and target.exists():
+        finished = _finished(target, scene, start)
+        _drop(beside)  # a kill may have left one
+        return finished
+    run = _Run(scene, target, start, backend)
+    with run.take_up(beside) if resume and beside.exists() else run.begin() as journal:
         with run_progress(progress, run.end) as report:
-            ended = run.follow(archive, report, watched(report, on_block))
-        run.leave(archive, ended, compress=compress)
-    return open_archive(target)
+            ended = run.follow(journal, report, watched(report, on_block))
+        ds = run.leave(journal, ended, compress=compress)
+    _drop(beside)
+    if ds.nbytes > LONGEST_WHOLE:  # it is in the journal no more
+        ds = open_archive(target)
+    if ended.status not in ("finished", "stopped"):
+        raise early_end(ds, ended.end_time)
+    return ds
 
 
 class _Run:
     """One run into one archive."""
 
-    def __init__(self, scene: Scene, target: Path, backend: str, start: engine.Start) -> None:
-        self._scene, self._target, self._backend, self._start = scene, target, backend, start
+    def __init__(self, scene: Scene, target: Path, start: engine.Start, backend: str) -> None:
+        self._scene, self._target, self._start = scene, target, start
         self.end = start.time + scene.run.duration
-        self._skipped, self._method = engine.outlook(scene, backend, start=start)
+        self._backend = backend
 
-    def begin(self) -> GrowingArchive:
-        """Make the archive."""
-        run = self._scene.run
+    def begin(self) -> RunJournal:
+        """Make the journal, in the place of an archive that may be replaced."""
+        self._backend = engine.choose_backend(self._backend, self._scene.run.method)
+        skipped, method = engine.outlook(self._scene, self._backend, start=self._start)
+        empty = unsolved("running", "the run is not at its end yet")
+        statistics = replace(empty.statistics, backend=self._backend, method=method, skipped=skipped)
+        ds = self._dataset(replace(empty, statistics=statistics))
         try:
-            return GrowingArchive.create(self._target, self._template(), run.sample_count, run.duration)
-        except DiskError as error:
+            refuse_too_small(
+                self._target.parent, 8 * len(columns_of(self._scene)) * self._scene.run.sample_count
+            )
+            journal = RunJournal.create(self._target, ds.attrs)
+            self._target.unlink(missing_ok=True)
+        except OSError as error:
             raise SolverError(
-                f"the archive {self._target} could not be made ({error})",
+                f"the archive {self._target} could not be made ({error.strerror or error})",
                 time=0.0,
                 state={},
                 last_event="none",
                 advice="free some space, or reduce the number of samples (run.samples)",
             ) from error
+        return journal
 
-    def take_up(self) -> GrowingArchive:
-        """Open the archive that is there."""
+    def take_up(self, beside: Path) -> RunJournal:
+        """Open the journal that is there, and make sure that it is of this very run."""
         try:
-            return GrowingArchive(self._target, self._template())
-        except DiskError as error:
-            raise SceneError("archive", self._target, f"cannot be written ({error})") from error
+            journal = RunJournal(beside, "a")
+        except (OSError, ValueError) as error:
+            reason = getattr(error, "strerror", None) or error
+            allowed = f"cannot be resumed from {beside.name} ({reason}): start anew with --overwrite (overwrite=True)"
+            raise SceneError("archive", self._target, allowed) from error
+        try:
+            _refuse_other(self._target, journal.attributes, self._scene, self._start)
+            self._backend = _same_backend(self._backend, str(journal.attributes["backend"]))
+            engine.choose_backend(self._backend, self._scene.run.method)
+        except BaseException:
+            journal.close()
+            raise
+        return journal
 
     def follow(
-        self, archive: GrowingArchive, report: RunProgress | None, on_block: engine.OnBlock | None
+        self, journal: RunJournal, report: RunProgress | None, on_block: engine.OnBlock | None
     ) -> Ended:
         """Run on from the newest checkpoint."""
         reached = self._start.time
 
         def take(block: Block, statistics: Statistics, wall_time: float) -> None:
             nonlocal reached
-            archive.take(block, statistics, wall_time, last=_is_end(block.time, self.end))
+            with disk_errors():
+                journal.take(block, statistics, wall_time, last=_is_end(block.time, self.end))
             reached = block.time
 
         try:
-            start, point = self._start, archive.go_back()
+            start = self._start
+            with disk_errors():
+                point = journal.go_back()
             if point is not None:
                 reached = point.time
                 if _is_end(reached, self.end):  # all that is missing is the final form
@@ -132,7 +162,7 @@ class _Run:
                     checkpoint=point.state,
                     reached=reached,
                     wall_time=point.wall_time,
-                    events=point.lengths["event"],
+                    events=point.events,
                     statistics=point.statistics,
                 )
             return engine.follow(
@@ -144,42 +174,43 @@ class _Run:
                 on_block=on_block,
             )
         except DiskError as error:
-            raise self._not_written(archive, reached, error) from error
+            raise self._not_written(
+                reached, f"the archive {self._target} could not be written ({error})"
+            ) from error
 
-    def leave(self, archive: GrowingArchive, ended: Ended, *, compress: bool) -> None:
-        """Put the archive into its final form, or close it as it is for a run that was interrupted.
+    def leave(self, journal: RunJournal, ended: Ended, *, compress: bool) -> xr.Dataset:
+        """Write the archive of a run that has ended, and return what is in it.
 
         Raises
         ------
         SolverError, Interrupted
-            If the run did not reach its end.
+            If the run was interrupted, or the disk does not take the archive; the journal stays as it is.
         """
-        if ended.status == "interrupted":
-            raise self._interrupted(archive)
         try:
-            template = self._template(ended)
-            log_imbalance(template)
-            archive.finish(template, compress=compress)
+            with disk_errors():
+                journal.flush()
+                if ended.status == "interrupted":
+                    raise KeyboardInterrupt
+                ds = with_validity(journal.filled(self._ended(ended)), self._scene)
+                log_imbalance(ds)
+                if ds.nbytes <= LONGEST_WHOLE:
+                    ds.load()
+                save(ds, self._target, overwrite=True, compress=compress)
         except KeyboardInterrupt:
-            raise self._interrupted(archive) from None
-        except DiskError as error:
-            raise self._not_written(archive, ended.end_time, error) from error
-        if ended.status not in ("finished", "stopped"):
-            raise early_end(open_archive(self._target), ended.end_time)
+            raise self._interrupted() from None
+        except (DiskError, SceneError) as error:
+            raise self._not_written(ended.end_time, str(error)) from error
+        return ds
 
-    def _interrupted(self, archive: GrowingArchive) -> Interrupted:
-        archive.close()
+    def _interrupted(self) -> Interrupted:
         kept = f"the run up to there is in {self._target}; go on with --resume (resume=True)"
         return Interrupted(kept, self._left())
 
-    def _not_written(self, archive: GrowingArchive, reached: float, error: DiskError) -> SolverError:
-        archive.close()
-        return early_end(
-            self._left(), reached, f"the archive {self._target} could not be written ({error})", _FREE_SPACE
-        )
+    def _not_written(self, reached: float, message: str) -> SolverError:
+        return early_end(self._left(), reached, message, _FREE_SPACE)
 
     def _left(self) -> xr.Dataset:
-        """Open the archive of a run that has been left; its claim lasts until the error is there."""
+        """Read the journal of a run that has been left; its claim lasts until the error is there."""
         ds = open_archive(self._target)
         ds.attrs |= {"status": "interrupted", "message": f"{ds.attrs['message']}{RESUMABLE}"}
         return ds
@@ -192,31 +223,23 @@ class _Run:
         balance, extremes = engine.kept_at(self._scene, point.state, self._start)
         return engine.Ended(statistics, "finished", "", point.time, balance, extremes, point.state)
 
-    def _template(self, ended: Ended | None = None) -> xr.Dataset:
-        """Make the run's dataset, without samples and rows."""
-        empty = unsolved("running", "the run is not at its end yet")
-        if ended is None:
-            statistics = replace(
-                empty.statistics, backend=self._backend, method=self._method, skipped=self._skipped
+    def _ended(self, ended: Ended) -> xr.Dataset:
+        """Make the dataset of a run that has ended, without samples and rows."""
+        return self._dataset(
+            replace(
+                unsolved(ended.status, ended.message),
+                statistics=ended.statistics,
+                reached=ended.end_time,
+                balance=ended.balance,
+                extremes=ended.extremes,
+                checkpoint=ended.checkpoint,
             )
-            return self._dataset(replace(empty, statistics=statistics))
-        solution = replace(
-            empty,
-            statistics=ended.statistics,
-            status=ended.status,
-            message=ended.message,
-            reached=ended.end_time,
-            balance=ended.balance,
-            extremes=ended.extremes,
-            checkpoint=ended.checkpoint,
         )
-        return self._dataset(solution)
 
     def _dataset(self, solution: Solution) -> xr.Dataset:
-        """Label a solution, and say how far the model holds and what the run goes on from."""
-        ds = with_validity(to_dataset(self._scene, replace(solution, start=self._start.time)), self._scene)
-        ds.attrs |= started_attributes(self._start)
-        return ds
+        """Label a solution, and say what the run goes on from."""
+        ds = to_dataset(self._scene, replace(solution, start=self._start.time))
+        return ds.assign_attrs(started_attributes(self._start))
 
 
 def _is_end(time: float, duration: float) -> bool:
@@ -224,26 +247,40 @@ def _is_end(time: float, duration: float) -> bool:
     return math.isclose(time, duration, rel_tol=1e-12)
 
 
-def _found(target: Path, scene: Scene, start: engine.Start) -> xr.Dataset:
-    """Open the archive to be resumed and make sure that it is of this very run."""
+def _finished(target: Path, scene: Scene, start: engine.Start) -> xr.Dataset:
+    """Open the archive of this very run, which is at its end; refuse any other."""
     ds = open_archive(target)
-    theirs = json.loads(ds.attrs["scene"])
-    differing = first_difference(theirs, scene.to_dict())
+    try:
+        _refuse_other(target, ds.attrs, scene, start)
+        if (status := ds.attrs["status"]) != "finished":
+            allowed = f"has ended early ({status}): there is nothing to go on with"
+            raise SceneError("archive", target, allowed)
+    except BaseException:
+        ds.close()
+        raise
+    return ds
+
+
+def _refuse_other(target: Path, attributes: Mapping[str, Any], scene: Scene, start: engine.Start) -> None:
+    """Refuse to resume a run with another scene, start or version, by the attributes of what is there."""
+    differing = first_difference(json.loads(attributes["scene"]), scene.to_dict())
     refusal = ""
-    if differing or "swept" in ds.attrs:
+    if differing or "swept" in attributes:
         what = f"of another scene ({differing[0]} differs)" if differing else ""
-        what = "of a sweep" if "swept" in ds.attrs else what
+        what = "of a sweep" if "swept" in attributes else what
         refusal = f"is {what}: resume with the scene it was begun with, or name another archive"
-    elif ds.attrs["status"] in ("running", "interrupted") and ds.attrs["product_version"] != __version__:
-        refusal = f"was begun by gearidae {ds.attrs['product_version']}, which alone can go on with it"
-    elif ds.attrs["status"] not in ("finished", "running", "interrupted"):
-        refusal = f"has ended early ({ds.attrs['status']}): there is nothing to go on with"
-    elif ds.attrs.get("started_from", "") != started_attributes(start).get("started_from", ""):
+    elif attributes["status"] == "running" and attributes["product_version"] != __version__:
+        refusal = f"was begun by gearidae {attributes['product_version']}, which alone can go on with it"
+    elif attributes.get("started_from", "") != started_attributes(start).get("started_from", ""):
         refusal = "began elsewhere: resume with the run that it went on from (--start, start=)"
     if refusal:
-        ds.close()
         raise SceneError("archive", target, refusal)
-    return ds
+
+
+def _drop(beside: Path) -> None:
+    """Delete a journal that nobody needs any more; Windows keeps one that somebody reads."""
+    with suppress(PermissionError):
+        beside.unlink(missing_ok=True)
 
 
 def _same_backend(backend: str, begun: str) -> str:

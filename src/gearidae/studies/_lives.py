@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import shutil
 from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
@@ -36,8 +35,8 @@ from gearidae.wear import LossLaw
 if TYPE_CHECKING:
     from gearidae.scene import Scene
 
-_LIFE: Final = re.compile(r"[0-9a-f]{64}\.nc(\.runs)?")
-"""Names of files of lives, and of the folders of windows beside them."""
+_LIFE: Final = re.compile(r"[0-9a-f]{64}\.nc(\.journal)?")
+"""Names of files of lives, and of the journals of windows beside them."""
 
 
 class _Options(RunOptions, total=False):
@@ -128,7 +127,7 @@ def lives(
     about = {"design": design, "seed": int(seed), "size": int(size), "of": None, "distributions": texts}
 
     def work(kept: _LifeCache | None) -> xr.Dataset:
-        common = _Common(settings, execution.backend, None if kept is None else kept.folder)
+        common = _Common(settings, execution.backend, None if kept is None else kept.path)
         followed: list[_Member] = []
         with (
             nullcontext() if kept is None else kept,
@@ -148,14 +147,14 @@ class _LifeCache:
     """The lives of an unfinished ensemble, each in a file of its own beside the archive, in ``OUT.nc.lives``."""
 
     def __init__(self, archive: Path) -> None:
-        self.folder = archive.with_name(f"{archive.name}.lives")
+        self.path = archive.with_name(f"{archive.name}.lives")
 
     def __enter__(self) -> None:
-        self.folder.mkdir(exist_ok=True)
+        self.path.mkdir(exist_ok=True)
 
     def __exit__(self, *_: object) -> None:
-        if not any(self.folder.iterdir()):  # refused, or interrupted at once
-            self.folder.rmdir()
+        if not any(self.path.iterdir()):  # refused, or interrupted at once
+            self.path.rmdir()
 
     def count(self) -> int:
         """Count the lives, those that are unfinished included."""
@@ -164,17 +163,17 @@ class _LifeCache:
     def remove(self, _scenes: Sequence[Scene] | None = None) -> None:
         """Delete the lives, and the folder if nothing else is in it."""
         for path in self._files():
-            if path.is_dir():  # windows of a life that could not be finished
-                shutil.rmtree(path)
-            else:
-                path.unlink()
-        if self.folder.is_dir():
+            path.unlink()
+        if self.path.is_dir():
             self.__exit__()
 
+    def close(self) -> None:
+        """Leave the lives as they are."""
+
     def _files(self) -> list[Path]:
-        if not self.folder.is_dir():
+        if not self.path.is_dir():
             return []
-        return [path for path in self.folder.iterdir() if _LIFE.fullmatch(path.name)]
+        return [path for path in self.path.iterdir() if _LIFE.fullmatch(path.name)]
 
 
 @dataclass(frozen=True)
