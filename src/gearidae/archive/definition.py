@@ -61,7 +61,6 @@ def write(ds: xr.Dataset, path: Path, *, compress: bool = True) -> None:
             for name, variable in old.variables.items():
                 attributes = {key: variable.getncattr(key) for key in variable.ncattrs()}
                 fill = attributes.pop("_FillValue", None)
-                grows = bool({*variable.dimensions} & {*long})
                 storage: dict[str, Any] = {}
                 if variable.dtype is not str:
                     shape = tuple(long.get(dim, len(old.dimensions[dim])) for dim in variable.dimensions)
@@ -71,11 +70,14 @@ def write(ds: xr.Dataset, path: Path, *, compress: bool = True) -> None:
                     name, variable.dtype, variable.dimensions, fill_value=fill, **storage
                 )
                 made.setncatts(attributes)
-                if grows:
-                    _copy(ds.variables[name], made)
-                else:
+                if not {*variable.dimensions} & {*long}:
                     made[...] = variable[...]
             new.setncatts({name: old.getncattr(name) for name in old.ncattrs()})
+    with opened(path, "a") as file:  # anew: the library keeps all chunks of variables that it has just made
+        file.set_auto_maskandscale(False)
+        for name, variable in file.variables.items():
+            if {*variable.dimensions} & {*long}:
+                _copy(ds.variables[name], variable)
 
 
 def _copy(values: xr.Variable, made: Any) -> None:

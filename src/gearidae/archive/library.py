@@ -61,13 +61,13 @@ def uninterrupted() -> Iterator[None]:
 
 
 @contextmanager
-def opened(path: Path, mode: Literal["r", "x"] = "r") -> Iterator[netCDF4.Dataset]:
+def opened(path: Path, mode: Literal["r", "a", "x"] = "r") -> Iterator[netCDF4.Dataset]:
     """Open a netCDF file of ours, with `LIBRARY` held.
 
     Parameters
     ----------
-    mode : {"r", "x"}, optional
-        To read, or to make it.
+    mode : {"r", "a", "x"}, optional
+        To read, to write into it, or to make it.
     """
     with LIBRARY:
         await_lock(path)

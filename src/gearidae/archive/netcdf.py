@@ -161,9 +161,8 @@ def _unfinished(journal: Path, path: str | os.PathLike[str], *, running: bool) -
     except OSError as error:
         raise SceneError("archive", path, f"cannot be read ({error.strerror or error})") from error
     except ValueError as error:
-        raise SceneError(
-            "archive", path, f"is not finished, and {journal.name} is no run that can be read: {error}"
-        ) from None
+        allowed = f"is not finished, and {journal.name} has no run that can be read ({error})"
+        raise SceneError("archive", path, allowed) from None
 
 
 def _checked(ds: xr.Dataset, path: str | os.PathLike[str]) -> xr.Dataset:
