@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-import shutil
 import signal
 import subprocess
 import sys
+from contextlib import closing
 
 import numpy as np
 import pytest
@@ -14,6 +14,7 @@ import xarray as xr
 
 import gearidae as gd
 from gearidae import engine
+from gearidae.archive.journal import Journal, journal_of
 from gearidae.errors import Interrupted
 from gearidae.records import Events, Solution, Statistics
 from gearidae.runs.run_cache import RunCache
@@ -25,11 +26,13 @@ FRACTIONS = [1.0, 0.8, 0.6, 0.5, 0.48, 0.45]
 SHOT = """
 import os, pathlib, signal, sys
 import gearidae as gd
+from gearidae.archive.journal import Journal
 
 low = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 2e-3, "run.samples": 101})
 
 def shoot(done, total):
-    if len(list(pathlib.Path(sys.argv[1] + ".runs").glob("*.npz"))) >= 3:
+    path = pathlib.Path(sys.argv[1] + ".journal")
+    if path.exists() and sum(1 for frame in Journal(path).frames()) > 3:  # the first one is the head
         os.kill(os.getpid(), signal.SIGKILL)
 
 gd.sweep(low, {"coating.sam_fraction": [1.0, 0.8, 0.6, 0.5, 0.48, 0.45]}, jobs=1,
@@ -74,8 +77,10 @@ def cut_off(tmp_path, monkeypatch):
     return archive
 
 
-def kept_files(archive):
-    return sorted(archive.with_name(f"{archive.name}.runs").iterdir())
+def kept(archive):
+    """Frames of the runs in the journal beside an archive."""
+    with Journal(journal_of(archive)) as journal:
+        return list(journal.frames())[1:]
 
 
 def test_a_killed_sweep_goes_on_and_equals_one_that_was_not(tmp_path, computed, expected):
@@ -84,7 +89,7 @@ def test_a_killed_sweep_goes_on_and_equals_one_that_was_not(tmp_path, computed, 
     shot = subprocess.run([sys.executable, "-c", SHOT, archive], capture_output=True, check=False)
     assert shot.returncode == -signal.SIGKILL, shot.stderr
     assert not archive.exists()
-    assert len(kept_files(archive)) == 3
+    assert len(kept(archive)) == 3
 
     ds = gd.sweep(LOW, {KEY: FRACTIONS}, archive=archive, resume=True)
     assert len(computed) == len(FRACTIONS) - 3
@@ -113,9 +118,11 @@ def test_progress_begins_with_what_is_there(cut_off):
 
 
 def test_an_unfinished_sweep_is_not_lost_by_mistake(cut_off, computed):
-    with pytest.raises(gd.SceneError, match=r"4 of its runs are in sweep\.nc\.runs.*--resume.*--overwrite"):
+    with pytest.raises(
+        gd.SceneError, match=r"4 of its runs are in sweep\.nc\.journal.*--resume.*--overwrite"
+    ):
         gd.sweep(LOW, {KEY: FRACTIONS}, archive=cut_off)
-    assert len(kept_files(cut_off)) == 4
+    assert len(kept(cut_off)) == 4
     assert computed == []
 
 
@@ -138,7 +145,7 @@ def test_ctrl_c_keeps_runs_to_go_on_from(tmp_path, monkeypatch, expected):
         gd.sweep(LOW, {KEY: FRACTIONS}, jobs=1, archive=archive, progress=interrupt)
     assert caught.value.dataset.status.values.tolist() == ["finished"] * 2 + ["interrupted"] * 4
     xr.testing.assert_identical(gd.open_archive(archive), caught.value.dataset)
-    assert len(kept_files(archive)) == 2
+    assert len(kept(archive)) == 2
     ds = gd.sweep(LOW, {KEY: FRACTIONS}, archive=archive, resume=True)
     xr.testing.assert_identical(without_times(ds), expected)
     assert list(tmp_path.iterdir()) == [archive]
@@ -185,37 +192,61 @@ def test_resume_needs_an_archive():
         gd.sweep(LOW, {KEY: FRACTIONS}, resume=True)
 
 
-def flip(path):
-    """Turn over one bit of one sample."""
+@pytest.mark.parametrize("part", [0.01, 0.5, 0.99])
+def test_damaged_runs_are_computed_again(cut_off, computed, expected, part):
+    """One bit of a sample, or anything else of a run, is turned over: the others are taken."""
+    _, second, *_ = kept(cut_off)
+    path = journal_of(cut_off)
     content = bytearray(path.read_bytes())
-    content[len(content) // 2] ^= 1
-    path.write_bytes(bytes(content))
-
-
-@pytest.mark.parametrize(
-    "deed",
-    [
-        flip,
-        lambda path: path.write_bytes(b""),
-        lambda path: path.write_bytes(path.read_bytes()[:3000]),
-        lambda path: path.write_bytes(b"\x80\x04\x95 not even a zip file"),
-        lambda path: np.savez(path, samples=np.zeros(3)),
-    ],
-    ids=["one bit", "empty", "cut", "no zip", "no run"],
-)
-def test_damaged_runs_are_computed_again(cut_off, computed, expected, deed):
-    deed(kept_files(cut_off)[1])
-    with pytest.warns(UserWarning, match="ignored and its run computed again"):
+    content[int(second.begin + 24 + part * (second.end - second.begin - 24))] ^= 1
+    path.write_bytes(content)
+    with pytest.warns(UserWarning, match="1 of the runs kept .* ignored and computed again"):
         ds = gd.sweep(LOW, {KEY: FRACTIONS}, archive=cut_off, resume=True)
     assert len(computed) == 3
     xr.testing.assert_identical(without_times(ds), expected)
     assert list(cut_off.parent.iterdir()) == [cut_off]
 
 
-def test_a_run_under_a_wrong_name_is_not_taken(cut_off, computed, expected):
-    first, second, *_ = kept_files(cut_off)
-    shutil.copy(first, second)
-    with pytest.warns(UserWarning, match="another scene"):
+def test_runs_before_a_cut_are_taken(cut_off, computed, expected):
+    _, second, *_ = kept(cut_off)
+    os.truncate(journal_of(cut_off), second.end + 100)
+    ds = gd.sweep(LOW, {KEY: FRACTIONS}, archive=cut_off, resume=True)
+    assert len(computed) == 4
+    xr.testing.assert_identical(without_times(ds), expected)
+    assert list(cut_off.parent.iterdir()) == [cut_off]
+
+
+@pytest.mark.parametrize(
+    "content", [b"", b"gearidae", b"\x80\x04\x95 no journal" * 9], ids=["empty", "cut", "other"]
+)
+def test_what_is_no_journal_is_refused_and_overwritten(cut_off, computed, expected, content):
+    journal_of(cut_off).write_bytes(content)
+    for options in ({}, {"resume": True}):
+        with pytest.raises(gd.SceneError, match=r"has no runs of a sweep.*overwrite") as caught:
+            gd.sweep(LOW, {KEY: FRACTIONS}, archive=cut_off, **options)
+        assert "\n" not in str(caught.value)
+    assert journal_of(cut_off).read_bytes() == content
+    assert computed == []
+    ds = gd.sweep(LOW, {KEY: FRACTIONS}, archive=cut_off, overwrite=True)
+    xr.testing.assert_identical(without_times(ds), expected)
+    assert list(cut_off.parent.iterdir()) == [cut_off]
+
+
+def test_runs_of_version_0_3_0_are_refused(tmp_path, computed):
+    (tmp_path / "sweep.nc.runs").mkdir()
+    (tmp_path / "sweep.nc.runs" / f"{'0' * 64}.npz").write_bytes(b"")
+    for options in ({}, {"resume": True}, {"overwrite": True}):
+        with pytest.raises(gd.SceneError, match=r"begun by gearidae 0\.3\.0: finish it with 0\.3\.0"):
+            gd.sweep(LOW, {KEY: FRACTIONS}, archive=tmp_path / "sweep.nc", **options)
+    assert computed == []
+
+
+def test_a_run_that_is_no_run_is_computed_again(cut_off, computed, expected):
+    """Made by hand, with sound checksums and a key that is asked for."""
+    with Journal(journal_of(cut_off), "a") as journal:
+        _, first, *_ = journal.frames()
+        journal.append({"key": first.header["key"], "status": 3}, {})
+    with pytest.warns(UserWarning, match="a run kept .* ignored and computed again"):
         ds = gd.sweep(LOW, {KEY: FRACTIONS}, archive=cut_off, resume=True)
     assert len(computed) == 3
     xr.testing.assert_identical(without_times(ds), expected)
@@ -225,28 +256,13 @@ def test_a_run_under_a_wrong_name_is_not_taken(cut_off, computed, expected):
     "settings", [{"rtol": 1e-4}, {"samples": 51}, {"t_end": 1e-3}, {"backend": "sksundae"}]
 )
 def test_runs_with_other_settings_are_left_alone(cut_off, computed, settings):
-    files = kept_files(cut_off)
+    before = journal_of(cut_off).read_bytes()
     with pytest.warns(UserWarning, match="4 of the runs kept .* left there"):
         ds = gd.sweep(LOW, {KEY: FRACTIONS[:2]}, archive=cut_off, resume=True, **settings)
     assert len(computed) == 2
     fresh = gd.sweep(LOW, {KEY: FRACTIONS[:2]}, **settings)
     xr.testing.assert_identical(without_times(ds), without_times(fresh))
-    assert kept_files(cut_off) == files
-
-
-def test_other_files_in_the_folder_stay(cut_off):
-    note = cut_off.with_name("sweep.nc.runs") / "note.txt"
-    note.write_text("mine")
-    gd.sweep(LOW, {KEY: FRACTIONS}, archive=cut_off, resume=True)
-    assert kept_files(cut_off) == [note]
-
-
-def test_what_a_kill_leaves_half_written_goes(cut_off):
-    first = kept_files(cut_off)[0]
-    half = first.with_name(f".{first.name}.123-0123abcd.part")
-    half.write_bytes(b"half")
-    gd.sweep(LOW, {KEY: FRACTIONS}, archive=cut_off, resume=True)
-    assert list(cut_off.parent.iterdir()) == [cut_off]
+    assert journal_of(cut_off).read_bytes().startswith(before)
 
 
 def test_a_longer_list_takes_what_fits(cut_off, computed):
@@ -270,17 +286,51 @@ def test_runs_that_failed_are_tried_again(tmp_path, monkeypatch):
     archive = tmp_path / "sweep.nc"
     with pytest.raises(KeyboardInterrupt):
         gd.sweep(LOW, {KEY: FRACTIONS}, jobs=1, archive=archive)
-    assert len(kept_files(archive)) == 2
+    assert len(kept(archive)) == 2
     monkeypatch.setattr(engine, "solve", solve)
     ds = gd.sweep(LOW, {KEY: FRACTIONS}, jobs=1, archive=archive, resume=True)
     assert set(ds.status.values) == {"finished"}
 
 
-def test_a_folder_that_takes_no_runs_is_one_warning_and_not_the_end(tmp_path, expected):
-    (tmp_path / "sweep.nc.runs").write_text("in the way")
+def test_a_disk_that_takes_no_runs_is_one_warning_and_not_the_end(tmp_path, expected, monkeypatch):
+    def full(self, *_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Journal, "append", full)
     with pytest.warns(UserWarning, match="cannot be kept") as caught:
         ds = gd.sweep(LOW, {KEY: FRACTIONS}, archive=tmp_path / "sweep.nc")
     assert len(caught) == 1
+    xr.testing.assert_identical(without_times(ds), expected)
+    assert [path.name for path in tmp_path.iterdir()] == ["sweep.nc"]
+
+
+def test_a_disk_that_is_full_for_a_while_costs_the_runs_of_that_while(
+    tmp_path, computed, expected, monkeypatch
+):
+    """What does not fit is taken back, so that the next runs are kept behind the last whole one."""
+    archive, append, calls = tmp_path / "sweep.nc", Journal.append, []
+
+    def sometimes(self, header, arrays):
+        calls.append(1)
+        if len(calls) in (3, 4):  # after the head and a run
+            self._write(self.end, b"half of a frame")
+            self.cut(self.end)
+            raise OSError(28, "No space left on device")
+        return append(self, header, arrays)
+
+    class CutOffError(Exception):
+        pass
+
+    def cut(done, total):
+        if done > 5.0:
+            raise CutOffError
+
+    monkeypatch.setattr(Journal, "append", sometimes)
+    with pytest.warns(UserWarning, match="cannot be kept"), pytest.raises(CutOffError):
+        gd.sweep(LOW, {KEY: FRACTIONS}, jobs=1, archive=archive, progress=cut)
+    del computed[:]
+    ds = gd.sweep(LOW, {KEY: FRACTIONS}, jobs=1, archive=archive, resume=True)
+    assert computed == [0.8, 0.6, 0.45]
     xr.testing.assert_identical(without_times(ds), expected)
 
 
@@ -298,9 +348,12 @@ def test_every_number_survives(tmp_path):
         statistics = Statistics(1, 2, 3, 4, 5, 6, 7, 0.1, "native", {"coast": np.int64(3), "drag": True})
         samples = {"height": numbers[:count], "speed": -numbers[:count]}
         run = Solution(np.arange(float(count)), samples, events, statistics, "finished", "", 0.1 * count)
-        kept = RunCache(tmp_path / "a.nc", LOW, "native")
-        kept.keep(LOW, run)
-        back, *judged = kept.take(LOW)
+        for act in ("keep", "take"):
+            with closing(RunCache(tmp_path / "a.nc", LOW, "native")) as cache:
+                if act == "keep":
+                    cache.keep(LOW, run)
+                else:
+                    back, *judged = cache.take(LOW)
         for mine, theirs in [
             (run.time, back.time),
             *zip(run.samples.values(), back.samples.values(), strict=True),

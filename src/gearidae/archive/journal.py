@@ -41,6 +41,12 @@ def journal_of(archive: Path) -> Path:
     return archive.with_name(f"{archive.name}.journal")
 
 
+def file_of(archive: Path) -> Path:
+    """Where what there is of an archive is: in its own file, or in its journal until it is finished."""
+    journal = journal_of(archive)
+    return journal if journal.exists() and not archive.exists() else archive
+
+
 @dataclass(frozen=True, slots=True)
 class Frame:
     """A whole frame of a journal.
@@ -245,7 +251,10 @@ class Journal:
 
 def _described(text: bytes, begin: int, end: int, size: int) -> Frame:
     """Make a frame of its header, and refuse arrays that do not fit into it: the file says where they are."""
-    header = json.loads(text)
+    try:
+        header = json.loads(text)
+    except RecursionError:
+        raise ValueError("the header of one of its frames is nested too deep") from None
     shapes: dict[str, tuple[int, ...]] = {}
     places: dict[str, tuple[int, str]] = {}
     place = end - size

@@ -24,7 +24,7 @@ from gearidae.archive.attributes import readable_scene, wrong_attribute
 from gearidae.archive.definition import CHUNK, LONGEST_WHOLE, write
 from gearidae.archive.disk import disk_errors
 from gearidae.archive.integrity import check_content, check_seal, seal, with_checksums
-from gearidae.archive.journal import SIGNATURE, journal_of
+from gearidae.archive.journal import SIGNATURE, file_of
 from gearidae.archive.keep import kept_in
 from gearidae.archive.library import await_lock, check_size, uninterrupted
 from gearidae.archive.lock import is_locked
@@ -118,8 +118,8 @@ def open_archive(path: str | os.PathLike[str]) -> xr.Dataset:
     running = is_locked(
         source
     )  # asked first: a run that ends meanwhile puts its archive in the journal's place
-    if not source.exists() and journal_of(source).exists():
-        return _unfinished(journal_of(source), path, running=running)
+    if (journal := file_of(source)) != source:
+        return _unfinished(journal, path, running=running)
     try:
         with source.open("rb") as file:
             head, looked_at = file.read(_HEADER), os.fstat(file.fileno())

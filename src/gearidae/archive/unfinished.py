@@ -7,7 +7,7 @@ until they are used.
 
 from __future__ import annotations
 
-import json
+import itertools
 import logging
 import time
 from bisect import bisect_right
@@ -28,9 +28,10 @@ from xarray.core.indexing import (
     explicit_indexing_adapter,
 )
 
+from gearidae.archive.attributes import readable_scene
 from gearidae.archive.dataset import to_dataset
 from gearidae.archive.end_state import end_state_attributes
-from gearidae.archive.journal import Frame, Journal, journal_of
+from gearidae.archive.journal import Journal, journal_of
 from gearidae.archive.rows import archived, teeth_in
 from gearidae.archive.time_index import LARGEST_IN_MEMORY, with_times
 from gearidae.archive.totals import total_variables
@@ -300,19 +301,19 @@ class RunJournal:
 
     def _read(self) -> None:
         """Read the head, and the whole frames up to the first that is altered."""
-        whole: list[Frame] = []
-        for frame in self._journal.frames():
-            if frame is None:
-                log.warning(
-                    "%s is damaged: what comes after its frame %d is left out", self._journal.path, len(whole)
-                )
-                break
-            whole.append(frame)
+        found = [*self._journal.frames()]
+        whole = [frame for frame in itertools.takewhile(lambda frame: frame is not None, found) if frame]
         if not whole or whole[0].header.get("kind") != "run":
             raise ValueError("it is not of a run, or altered at its head")
+        if len(whole) < len(found):
+            path = self._journal.path
+            log.warning("%s is damaged: what comes after its frame %d is left out", path, len(whole))
         self._head, *self._frames = whole
         self.attributes: dict[str, Any] = dict(self._head.header["attributes"])
-        self.scene = Scene.from_dict(json.loads(self.attributes["scene"]))
+        scene = readable_scene(self.attributes["scene"])
+        if scene is None:
+            raise ValueError("its scene is not readable")
+        self.scene = Scene.from_dict(scene)
         self._columns = columns_of(self.scene)
         sizes = {"samples": len(self._columns), **{kind.field: len(kind.columns) for kind in ROWS}}
         for number, frame in enumerate(self._frames, 1):

@@ -10,6 +10,7 @@ import xarray as xr
 
 import gearidae as gd
 from gearidae.archive.citing import cite
+from gearidae.archive.journal import file_of
 from gearidae.archive.rows import DIMS
 from gearidae.archive.select import is_roller, scene_of, swept_dims
 from gearidae.archive.target import whole_file
@@ -105,7 +106,7 @@ def describe(archive: Path, *, as_json: bool = False) -> int:
 
 def _contents(archive: Path, ds: xr.Dataset) -> Iterator[tuple[str, str, str]]:
     """Attributes, dimensions and variables of what a study has written."""
-    yield str(archive), f"{archive.stat().st_size / 1e6:.1f} MB", ""
+    yield str(archive), f"{file_of(archive).stat().st_size / 1e6:.1f} MB", ""
     numbers: list[tuple[str, str, str]] = []
     for name, value in ds.attrs.items():
         if name in ("title", "summary", "history", "source"):
@@ -122,7 +123,7 @@ def _contents(archive: Path, ds: xr.Dataset) -> Iterator[tuple[str, str, str]]:
 
 def _description(archive: Path, ds: xr.Dataset) -> Iterator[tuple[str, str, str]]:
     attributes = ds.attrs
-    yield str(archive), f"{archive.stat().st_size / 1e6:.1f} MB", ""
+    yield str(archive), f"{file_of(archive).stat().st_size / 1e6:.1f} MB", ""
     for name in ("title", "history", "source"):
         yield name, str(attributes[name]), ""
     ended = (

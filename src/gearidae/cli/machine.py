@@ -13,6 +13,7 @@ import numpy as np
 
 from gearidae.analysis.verdict import outcomes
 from gearidae.archive.citing import cite
+from gearidae.archive.journal import file_of
 from gearidae.archive.run_summary import summary_of
 from gearidae.archive.select import scene_of, swept_dims
 from gearidae.archive.totals import energy_balance
@@ -46,7 +47,7 @@ def archive_facts(archive: Path, ds: xr.Dataset) -> dict[str, Any]:
     summary = summary_of(ds)
     return {
         "file": str(archive),
-        "bytes": archive.stat().st_size,
+        "bytes": file_of(archive).stat().st_size,
         **{name: ds.attrs[name] for name in _ATTRIBUTES if name in ds.attrs},
         **_contents(ds),
         "swept": {dim: ds[dim].values.tolist() for dim in swept_dims(ds)},
