@@ -12,6 +12,7 @@ import xarray as xr
 import gearidae as gd
 from gearidae import engine
 from gearidae.analysis.verdict.headline import headline
+from gearidae.archive.journal import Journal
 from gearidae.cli import main
 from gearidae.studies.announcement import draw_words
 from sweeps import without_times
@@ -42,7 +43,8 @@ def interrupted(monkeypatch, folder, capsys):
         patch.setattr(engine, "solve", deed)
         assert main([*SWEEP, "--jobs", "1", "-o", "out.nc"]) == 130
     assert "--resume" in capsys.readouterr().err
-    assert len(list((folder / "out.nc.runs").iterdir())) == 2
+    with Journal(folder / "out.nc.journal") as journal:
+        assert len(list(journal.frames())) == 1 + 2
     return folder
 
 
@@ -56,11 +58,13 @@ def test_resume(interrupted, capsys):
 
 
 def test_a_damaged_run_is_one_line(interrupted, capsys):
-    next((interrupted / "out.nc.runs").iterdir()).write_bytes(b"damaged")
+    path = interrupted / "out.nc.journal"
+    content = path.read_bytes()
+    path.write_bytes(content[:-9] + bytes([content[-9] ^ 1]) + content[-8:])
     assert main([*SWEEP, "-o", "out.nc", "--resume"]) == 0
     complaint = capsys.readouterr().err
     assert complaint.startswith("gearidae: ")
-    assert "ignored and its run computed again" in complaint
+    assert "ignored and computed again" in complaint
     assert complaint.count("\n") == 1
 
 

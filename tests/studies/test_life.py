@@ -130,7 +130,7 @@ def test_a_life_that_was_cut_off_is_resumed(short, tmp_path, monkeypatch):
         np.testing.assert_array_equal(resumed[name], short[name])
     assert len(seen) - 1 == short.attrs["windows"]  # none was computed twice but for the one that was cut off
     assert path.exists()
-    assert not path.with_name("life.nc.runs").exists()
+    assert not path.with_name("life.nc.journal").exists()
 
 
 def test_a_life_that_is_cut_off_in_its_last_cycles_is_resumed(tmp_path):

@@ -106,7 +106,7 @@ def sweep(
 ) -> int:
     """Run a scene for several values of one or more keys, into one archive.
 
-    Finished runs are kept beside the archive, in OUT.nc.runs, until the archive is written.
+    Finished runs are kept beside the archive, in OUT.nc.journal, until the archive is written.
     """
     from gearidae.cli.simulation import sweep_case
 

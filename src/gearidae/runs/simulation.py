@@ -54,7 +54,8 @@ def simulate(
         True for a progress bar on a terminal or in a notebook, or a function of the simulated time
         reached [s] and the number of events so far.
     archive : path-like, optional
-        Write to this netCDF4 file while the run goes on. It can be opened at any time, also after a crash.
+        netCDF4 file to write. While the run goes on, what there is of it is in a journal beside it
+        (``OUT.nc.journal``), which `gearidae.open` reads by the name of the archive at any time, also after a crash.
     overwrite : bool, optional
         Whether `archive` may replace a file.
     resume : bool, optional
@@ -87,9 +88,9 @@ def simulate(
         has been run then.
     SolverError
         If the solver could not reach the end, or the disk is full. The error carries what was computed until then
-        as its ``dataset``, and `archive` holds the same.
+        as its ``dataset``, and `archive` or its journal holds the same.
     Interrupted
-        On Ctrl-C: a `KeyboardInterrupt` that carries what was computed as its ``dataset``. `archive` holds the same
+        On Ctrl-C: a `KeyboardInterrupt` that carries what was computed as its ``dataset``. The journal holds the same
         and can be resumed.
 
     Examples

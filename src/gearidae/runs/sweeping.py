@@ -45,7 +45,7 @@ def sweep(
 ) -> xr.Dataset:
     """Run a scene for every combination of some keys' values, or for values that are walked together.
 
-    With `archive`, every finished run is kept in a folder beside it (``OUT.nc.runs``) until the archive is
+    With `archive`, every finished run is kept in a file beside it (``OUT.nc.journal``) until the archive is
     written, so that a sweep that was cut off, even by a power failure, can be resumed.
 
     Parameters

@@ -1,6 +1,6 @@
 """Find out what observations of gears say about keys that are not known: their posterior.
 
-Finished runs are kept beside the output, in OUT.nc.runs, until it is written.
+Finished runs are kept beside the output, in OUT.nc.journal, until it is written.
 """
 
 from __future__ import annotations

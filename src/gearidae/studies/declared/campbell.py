@@ -1,6 +1,6 @@
 """Spectra of a gear pair at many speeds, with mesh, shafts and the frequency of the contact: a Campbell diagram.
 
-The drive holds each speed. Finished runs are kept beside the output, in OUT.nc.runs, until it is written.
+The drive holds each speed. Finished runs are kept beside the output, in OUT.nc.journal, until it is written.
 """
 
 from __future__ import annotations

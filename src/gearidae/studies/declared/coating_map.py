@@ -1,6 +1,6 @@
 """Map the frequency of the impact response against the SAM fraction.
 
-Finished runs are kept beside the map, in MAP.nc.runs, until the map is written.
+Finished runs are kept beside the map, in MAP.nc.journal, until the map is written.
 """
 
 # Teodorescu et al. 2009 (doi:10.1016/j.triboint.2008.05.019), Fig. 10: one line for one pair of gears and one torque.
@@ -66,8 +66,8 @@ def coating_map(
 ) -> xr.Dataset:
     """Characteristic frequency against SAM fraction (Teodorescu et al. 2009, Fig. 10).
 
-    With `archive`, every finished run is kept in a folder beside it (``MAP.nc.runs``) until the map is written, so that
-    a map that was cut off can be resumed.
+    With `archive`, every finished run is kept in a file beside it (``MAP.nc.journal``) until the map is written, so
+    that a map that was cut off can be resumed.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """Compare quantities of a run over a ladder of tolerances: which converge at what cost, and which are chaotic.
 
 Each tolerance is run several times, with neighbouring tolerances and with initial gaps that differ by 1e-9. Finished
-runs are kept beside the output, in OUT.nc.runs, until it is written.
+runs are kept beside the output, in OUT.nc.journal, until it is written.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Run a scene with keys drawn from distributions: how often it sticks, and what that depends on.
 
-Finished runs are kept beside the archive, in OUT.nc.runs, until the archive is written.
+Finished runs are kept beside the archive, in OUT.nc.journal, until the archive is written.
 """
 
 from __future__ import annotations

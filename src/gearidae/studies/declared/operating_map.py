@@ -1,6 +1,6 @@
 """Map over two keys where the gear turns, where it sticks, and where its teeth cross the backlash.
 
-Finished runs are kept beside the archive, in OUT.nc.runs, until the archive is written.
+Finished runs are kept beside the archive, in OUT.nc.journal, until the archive is written.
 """
 
 from __future__ import annotations

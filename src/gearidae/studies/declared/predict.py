@@ -1,6 +1,6 @@
 """Run a scene with the keys that were calibrated drawn from their posterior: how often it sticks.
 
-Finished runs are kept beside the archive, in OUT.nc.runs, until the archive is written.
+Finished runs are kept beside the archive, in OUT.nc.journal, until the archive is written.
 """
 
 from __future__ import annotations

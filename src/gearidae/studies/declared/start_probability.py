@@ -1,7 +1,7 @@
 """Run gears from their start with keys drawn from distributions: which share has started by which time.
 
-A gear has started when it has turned one pitch forward. Finished runs are kept beside the output, in OUT.nc.runs, until
-it is written.
+A gear has started when it has turned one pitch forward. Finished runs are kept beside the output, in OUT.nc.journal,
+until it is written.
 """
 
 from __future__ import annotations
