@@ -173,6 +173,15 @@ def test_a_sweep_keeps_its_archive_and_the_journal_beside_it(other, single, tmp_
     assert [entry.name for entry in tmp_path.iterdir()] == ["out.nc"]
 
 
+def test_what_a_kill_has_left_of_an_archive_goes_with_the_next(single, tmp_path):
+    """Of this archive only: another may be in the making."""
+    left = [tmp_path / f".{name}.nc.123-0123abcd.part" for name in ("out", "other")]
+    for path in left:
+        path.write_bytes(b"half")
+    save(single, tmp_path / "out.nc")
+    assert {path.name for path in tmp_path.iterdir()} == {"out.nc", left[1].name}
+
+
 def test_a_sweep_that_ends_early_leaves_no_claim(tmp_path):
     path = tmp_path / "out.nc"
 

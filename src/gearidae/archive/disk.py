@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import re
 import secrets
 import shutil
 from collections.abc import Iterator
@@ -71,6 +72,14 @@ def disk_errors(part: Path | None = None) -> Iterator[None]:
 def part_beside(target: Path, ending: str = "") -> Path:
     """Name of a hidden file beside a target, of this process alone: written first, and renamed when it is whole."""
     return target.with_name(f".{target.name}.{os.getpid()}-{secrets.token_hex(4)}.part{ending}")
+
+
+def drop_parts(target: Path) -> None:
+    """Delete what processes that were killed while they wrote a target have left beside it."""
+    name = re.compile(rf"\.{re.escape(target.name)}\.[0-9]+-[0-9a-f]{{8}}\.part")
+    for path in target.parent.iterdir():
+        if name.fullmatch(path.name):
+            path.unlink(missing_ok=True)
 
 
 def sync(path: Path) -> None:

@@ -10,7 +10,7 @@ from contextvars import ContextVar
 from pathlib import Path
 from typing import Final
 
-from gearidae.archive.disk import DiskError, no_room, part_beside, sync
+from gearidae.archive.disk import DiskError, drop_parts, no_room, part_beside, sync
 from gearidae.archive.journal import journal_of
 from gearidae.archive.lock import claimed
 from gearidae.errors import DiskFullError, SceneError
@@ -144,6 +144,7 @@ def claims_target(
                 "start anew with --overwrite (overwrite=True), or name another"
             )
             raise SceneError(name, path, allowed)
+        drop_parts(target)  # which nobody writes but this thread
         yield target
 
 
