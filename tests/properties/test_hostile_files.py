@@ -282,12 +282,13 @@ def test_an_attribute_of_another_type_ends_in_one_line(
 ):
     """Arrays, bytes, huge and empty texts, numbers for texts and texts for numbers."""
     file = copied(partial, tmp_path)
-    with Journal(journal_of(file)) as journal:
-        head, *frames = journal.frames()
+    with Journal(journal_of(file), "run") as journal:
+        frames = list(journal.frames())
         tables = [{name: journal.table(frame, name) for name in frame.shapes} for frame in frames]
-    attributes = head.header["attributes"] | {attribute: value.tolist() if attribute == "status" else value}
-    with Journal(journal_of(file), "w") as journal:
-        journal.append(head.header | {"attributes": attributes}, {})
+    attributes = journal.head.header["attributes"] | {
+        attribute: value.tolist() if attribute == "status" else value
+    }
+    with Journal.create(journal_of(file), "run", attributes=attributes) as journal:
         for frame, arrays in zip(frames, tables, strict=True):
             journal.append(frame.header, arrays)
     read_by_commands(file, partial_case, tmp_path, capsys, pictures=attribute in ("title", "scene"))

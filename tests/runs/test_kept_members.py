@@ -28,7 +28,7 @@ low = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 2e-3})
 
 def shoot(done, total):
     path = pathlib.Path(sys.argv[1] + ".journal")
-    if path.exists() and sum(1 for frame in Journal(path).frames()) > 3:  # the first one is the head
+    if path.exists() and sum(1 for frame in Journal(path, "runs").frames()) >= 3:
         os.kill(os.getpid(), signal.SIGKILL)
 
 gd.studies.ensemble(low, {"coating.sam_fraction": "uniform(0.4, 1)"}, 8, jobs=2,

@@ -135,12 +135,12 @@ def die_at_write(number):
 
         return do
 
-    def write_half(self, place, *contents):
-        content = b"".join(map(bytes, contents))
-        write(self, place, content[: len(content) // 2])
+    def append_half(self, header, arrays):
+        content = b"".join(map(bytes, journal._packed(header, arrays)))
+        self._file.seek(self.end)
+        self._file.write(content[: len(content) // 2])
 
-    write = journal.Journal._write
-    journal.Journal._write = dying(write, write_half)
+    journal.Journal.append = dying(journal.Journal.append, append_half)
     journal.Journal.cut = dying(journal.Journal.cut, lambda self, end: None)
     os.fsync = dying(os.fsync, lambda descriptor: None)
     Path.replace = dying(Path.replace, lambda path, target: None)
@@ -299,7 +299,7 @@ def test_a_journal_that_does_not_fit_its_scene_is_refused(path, change, allowed)
     """Made by hand, with sound checksums."""
     with pytest.raises(gd.Interrupted):
         simulate(path, progress=interrupt_after(0.5))
-    with journal.Journal(journal_of(path), "a") as file:
+    with journal.Journal(journal_of(path), "run", "a") as file:
         *_, last = file.frames()
         tables = {name: file.table(last, name) for name in last.shapes}
         file.append({"time": 0.0}, {**tables, **change})
@@ -313,7 +313,7 @@ def test_a_state_that_is_none_of_this_scene_is_refused_by_the_engine(path):
     with pytest.raises(gd.Interrupted):
         simulate(path, progress=interrupt_after(0.5))
     counts = {counter.name: 1 for counter in COUNTERS}
-    with journal.Journal(journal_of(path), "a") as file:
+    with journal.Journal(journal_of(path), "run", "a") as file:
         *_, last = file.frames()
         tables = {name: file.table(last, name) for name in last.shapes} | {
             "state": np.full(40, 2**62, np.uint64)
@@ -490,15 +490,14 @@ def test_a_disk_that_fills_up_anywhere_is_exit_3_and_the_run_goes_on(path, capfd
 @pytest.mark.usefixtures("many_small_blocks")
 def test_a_disk_that_fills_up_leaves_what_was_written(path, whole, monkeypatch):
     """Room for the first half of the run; then room again."""
-    write = journal.Journal._write
+    append = journal.Journal.append
 
-    def write_some(self, place, *contents):
-        if place > 40_000:
-            write(self, place, contents[0][:10])
+    def append_some(self, header, arrays):
+        if self.end > 40_000:
             full(path)
-        return write(self, place, *contents)
+        return append(self, header, arrays)
 
-    monkeypatch.setattr(journal.Journal, "_write", write_some)
+    monkeypatch.setattr(journal.Journal, "append", append_some)
     with pytest.raises(gd.SolverError, match=r"could not be written \(No space left.*resume") as caught:
         simulate(path)
     part = assert_sound(path, whole)

@@ -27,10 +27,9 @@ from gearidae.archive.disk import sync
 
 SIGNATURE: Final = b"gearidae journal 1\n"
 """How the file begins; the number is that of the layout."""
-_LEAD: Final = struct.Struct("<4sIQI")
-"""Before each frame: mark, bytes of the header, bytes of the arrays, CRC-32 of both; then CRC-32 of all that."""
+_LEAD: Final = struct.Struct("<4sIQII")
+"""Before each frame: mark, bytes of the header, bytes of the arrays, CRC-32 of both, and of the lead before that."""
 _MARK: Final = b"\x93frm"
-_SUM: Final = struct.Struct("<I")
 _TYPES: Final = {"f": "<f8", "u": "<u8"}
 _PIECE: Final = 2**20
 """Bytes read at a time."""
@@ -73,11 +72,15 @@ class Journal:
     Parameters
     ----------
     path : Path
-    mode : {"r", "a", "w"}, optional
-        To read, to append to it, or to make it in the place of whatever is there.
+    kind : str
+        What it is of, ``run`` or ``runs``.
+    mode : {"r", "a"}, optional
+        To read, or to append too.
 
     Attributes
     ----------
+    head : Frame
+        Its first frame.
     end : int
         Place behind the last frame that `frames` or `append` has met, where the next one goes.
 
@@ -86,25 +89,37 @@ class Journal:
     OSError
         If the disk does not give or take it.
     ValueError
-        If the file is no journal.
+        If the file is no journal of this kind, or altered at its head.
     """
 
-    def __init__(self, path: Path, mode: Literal["r", "a", "w"] = "r") -> None:
+    def __init__(self, path: Path, kind: str, mode: Literal["r", "a"] = "r") -> None:
         self.path = path
         self._using = threading.Lock()
-        self._file = path.open({"r": "rb", "a": "r+b", "w": "w+b"}[mode], buffering=0)
-        self.end = len(SIGNATURE)
+        self._file = path.open({"r": "rb", "a": "r+b"}[mode], buffering=0)
         try:
-            if mode == "w":
-                self._write(0, SIGNATURE)
-            elif self._read(0, self.end) != SIGNATURE:
+            if self._read(0, len(SIGNATURE)) != SIGNATURE:
                 raise ValueError("it is no journal of this version of gearidae")
+            self.head = self.frame(len(SIGNATURE))
+            if self.head.header.get("kind") != kind:
+                raise ValueError(f"it is of a {'single run' if kind == 'runs' else 'sweep or study'}")
         except BaseException:
             self.close()
             raise
+        self.end = self.head.end
+
+    @classmethod
+    def create(cls, path: Path, kind: str, **head: Any) -> Journal:
+        """Make a journal in the place of whatever is there; nothing is left behind where the disk does not take it."""
+        try:
+            path.write_bytes(SIGNATURE + b"".join(_packed({"kind": kind, **head}, {})))
+        except OSError:
+            with suppress(OSError):  # a folder is in its place
+                path.unlink(missing_ok=True)
+            raise
+        return cls(path, kind, "a")
 
     def frames(self) -> Iterator[Frame | None]:
-        """Go through the frames from the first on, with all checksums: 0.3 s for 1 GB.
+        """Go through the frames behind the head, with all checksums: 0.3 s for 1 GB.
 
         Yields
         ------
@@ -112,9 +127,9 @@ class Journal:
             None in the place of a frame whose content is altered. The last one is that before one that is cut off, or
             whose lengths are altered.
         """
-        self.end, size = len(SIGNATURE), self._file.seek(0, os.SEEK_END)
+        self.end, size = self.head.end, self._file.seek(0, os.SEEK_END)
         while (lead := self._lead(self.end, size)) is not None:
-            begin, self.end = self.end, self.end + _LEAD.size + _SUM.size + lead[0] + lead[1]
+            begin, self.end = self.end, self.end + _LEAD.size + lead[0] + lead[1]
             yield self._frame(begin, *lead)
 
     def frame(self, begin: int) -> Frame:
@@ -168,26 +183,20 @@ class Journal:
         OSError
             If the disk does not take it; the journal is then as before.
         """
-        parts = {
-            name: np.ascontiguousarray(values, _TYPES[values.dtype.kind]) for name, values in arrays.items()
-        }
-        layout = [[name, part.dtype.str, part.shape] for name, part in parts.items()]
-        text = json.dumps({**header, "arrays": layout}, default=_plain).encode()
-        contents: list[Any] = [text, *(part.reshape(-1).view(np.uint8) for part in parts.values())]
-        checksum = 0
-        for content in contents:
-            checksum = zlib.crc32(content, checksum)
-        size = sum(part.nbytes for part in parts.values())
-        lead = _LEAD.pack(_MARK, len(text), size, checksum)
-        begin = self.end
+        begin, contents = self.end, _packed(header, arrays)
         try:
-            end = self._write(begin, lead + _SUM.pack(zlib.crc32(lead)), *contents)
+            with self._using:
+                self._file.seek(begin)
+                for content in contents:
+                    left = memoryview(content)
+                    while left:  # as much as there is room for is written without an error
+                        left = left[self._file.write(left) :]
         except BaseException:
             with suppress(OSError):
                 self.cut(begin)  # which frees what a full disk lacks
             raise
-        self.end = end
-        return _described(text, begin, end, size)
+        self.end = begin + sum(map(len, contents))
+        return _described(contents[1], begin, self.end)
 
     def cut(self, end: int) -> None:
         """Take back all that is behind a place, the end of a frame."""
@@ -211,26 +220,23 @@ class Journal:
 
     def _lead(self, place: int, size: int) -> tuple[int, int, int] | None:
         """Lengths and checksum of the frame at a place; None if there is no whole one."""
-        lead = self._read(place, _LEAD.size + _SUM.size)
-        if (
-            len(lead) < _LEAD.size + _SUM.size
-            or zlib.crc32(lead[: _LEAD.size]) != _SUM.unpack(lead[_LEAD.size :])[0]
-        ):
+        lead = self._read(place, _LEAD.size)
+        if len(lead) < _LEAD.size:
             return None
-        mark, text_size, array_size, checksum = _LEAD.unpack(lead[: _LEAD.size])
-        if mark != _MARK or place + len(lead) + text_size + array_size > size:
+        mark, text_size, array_size, checksum, own = _LEAD.unpack(lead)
+        is_whole = place + _LEAD.size + text_size + array_size <= size
+        if mark != _MARK or own != zlib.crc32(lead[:-4]) or not is_whole:
             return None
         return text_size, array_size, checksum
 
     def _frame(self, begin: int, text_size: int, array_size: int, checksum: int) -> Frame | None:
         """Read a frame of which the lengths are known; None if its content is altered."""
-        place = begin + _LEAD.size + _SUM.size
+        place = begin + _LEAD.size
         text = self._read(place, text_size)
-        place += text_size
-        found = zlib.crc32(text)
-        for start in range(place, place + array_size, _PIECE):
-            found = zlib.crc32(self._read(start, min(_PIECE, place + array_size - start)), found)
-        return _described(text, begin, place + array_size, array_size) if found == checksum else None
+        found, end = zlib.crc32(text), place + text_size + array_size
+        for start in range(place + text_size, end, _PIECE):
+            found = zlib.crc32(self._read(start, min(_PIECE, end - start)), found)
+        return _described(text, begin, end) if found == checksum else None
 
     def _read(self, place: int, size: int) -> bytes:
         with self._using:  # threads share the file's position
@@ -238,31 +244,36 @@ class Journal:
             content: bytes = self._file.read(size)
             return content
 
-    def _write(self, place: int, *contents: Any) -> int:
-        """Write at a place and return the one behind."""
-        with self._using:
-            self._file.seek(place)
-            for content in contents:
-                left = memoryview(content)
-                while left:  # as much as there is room for is written without an error
-                    left = left[self._file.write(left) :]
-            return self._file.tell()
+
+def _packed(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> list[Any]:
+    """Bytes of a frame: lead, header, and each array."""
+    parts = {name: np.ascontiguousarray(values, _TYPES[values.dtype.kind]) for name, values in arrays.items()}
+    layout = [[name, part.dtype.str, part.shape] for name, part in parts.items()]
+    text = json.dumps({**header, "arrays": layout}, default=_plain).encode()
+    contents: list[Any] = [text, *(part.reshape(-1).view(np.uint8) for part in parts.values())]
+    checksum = 0
+    for content in contents:
+        checksum = zlib.crc32(content, checksum)
+    lead = _LEAD.pack(_MARK, len(text), sum(part.nbytes for part in parts.values()), checksum, 0)[:-4]
+    return [lead + zlib.crc32(lead).to_bytes(4, "little"), *contents]
 
 
-def _described(text: bytes, begin: int, end: int, size: int) -> Frame:
+def _described(text: bytes, begin: int, end: int) -> Frame:
     """Make a frame of its header, and refuse arrays that do not fit into it: the file says where they are."""
-    try:
-        header = json.loads(text)
-    except RecursionError:
-        raise ValueError("the header of one of its frames is nested too deep") from None
     shapes: dict[str, tuple[int, ...]] = {}
     places: dict[str, tuple[int, str]] = {}
-    place = end - size
-    for name, dtype, shape in header.pop("arrays"):
-        if dtype not in _TYPES.values() or not all(type(length) is int and length >= 0 for length in shape):
-            raise ValueError(f"its array {name} is of another kind")
-        shapes[name], places[name] = tuple(shape), (place, dtype)
-        place += 8 * math.prod(shape)
+    place = begin + _LEAD.size + len(text)
+    try:
+        header = json.loads(text)
+        for name, dtype, shape in header.pop("arrays"):
+            if dtype not in _TYPES.values() or not all(
+                type(length) is int and length >= 0 for length in shape
+            ):
+                raise ValueError(f"its array {name} is of another kind")
+            shapes[name], places[name] = tuple(shape), (place, dtype)
+            place += 8 * math.prod(shape)
+    except (RecursionError, KeyError, TypeError, AttributeError) as error:
+        raise ValueError("the header of one of its frames is not readable") from error
     if place != end:
         raise ValueError("its arrays are not as long as they say")
     return Frame(header, shapes, begin, end, places)

@@ -127,38 +127,33 @@ class RunJournal:
     """
 
     def __init__(self, path: Path, mode: Literal["r", "a"] = "r") -> None:
-        self._journal = Journal(path, mode)
+        self._journal = Journal(path, "run", mode)
         try:
             self._read()
             _ = self.checkpoint
         except (KeyError, TypeError, AttributeError) as error:  # sound, but of something else
-            self._journal.close()
+            self.close()
             raise ValueError(
                 f"it is not of a run of this version ({type(error).__name__}: {error})"
             ) from error
         except BaseException:
-            self._journal.close()
+            self.close()
             raise
         self._checkpointed = self._written = time.monotonic()
         self._held: list[Block] = []
 
     @classmethod
     def create(cls, archive: Path, attributes: Mapping[str, Any]) -> RunJournal:
-        """Begin the journal of a run, in the place of whatever is there; nothing is left behind where it cannot be.
+        """Begin the journal of a run, in the place of whatever is there.
 
         Raises
         ------
         OSError
-            If the disk does not take it.
+            If the disk does not take it; nothing is left behind then.
         """
         path = journal_of(archive)
-        try:
-            with Journal(path, "w") as journal:
-                journal.append({"kind": "run", "attributes": dict(attributes)}, {})
-                journal.sync()
-        except OSError:
-            path.unlink(missing_ok=True)
-            raise
+        with Journal.create(path, "run", attributes=dict(attributes)) as journal:
+            journal.sync()
         return cls(path, "a")
 
     def __enter__(self) -> RunJournal:
@@ -170,11 +165,6 @@ class RunJournal:
     def close(self) -> None:
         """Close the file."""
         self._journal.close()
-
-    @property
-    def lengths(self) -> dict[str, int]:
-        """How many samples and rows there are, along each dimension that grows."""
-        return {dim: sum(self._lengths(field)) for dim, field in _FIELDS.items()}
 
     def take(self, block: Block, statistics: Statistics, wall_time: float, *, last: bool = False) -> None:
         """Append a block of output.
@@ -240,7 +230,7 @@ class RunJournal:
             log.warning("%s has no whole checkpoint: the run begins anew", self._journal.path)
         while self._frames and "state" not in self._frames[-1].shapes:
             self._frames.pop()
-        self._journal.cut(self._frames[-1].end if self._frames else self._head.end)
+        self._journal.cut((self._frames or [self._journal.head])[-1].end)
         return self.checkpoint
 
     @property
@@ -302,14 +292,13 @@ class RunJournal:
     def _read(self) -> None:
         """Read the head, and the whole frames up to the first that is altered."""
         found = [*self._journal.frames()]
-        whole = [frame for frame in itertools.takewhile(lambda frame: frame is not None, found) if frame]
-        if not whole or whole[0].header.get("kind") != "run":
-            raise ValueError("it is not of a run, or altered at its head")
-        if len(whole) < len(found):
-            path = self._journal.path
-            log.warning("%s is damaged: what comes after its frame %d is left out", path, len(whole))
-        self._head, *self._frames = whole
-        self.attributes: dict[str, Any] = dict(self._head.header["attributes"])
+        self._frames = [
+            frame for frame in itertools.takewhile(lambda frame: frame is not None, found) if frame
+        ]
+        if len(self._frames) < len(found):
+            count = len(self._frames)
+            log.warning("%s is damaged: what comes after its frame %d is left out", self._journal.path, count)
+        self.attributes: dict[str, Any] = dict(self._journal.head.header["attributes"])
         scene = readable_scene(self.attributes["scene"])
         if scene is None:
             raise ValueError("its scene is not readable")
@@ -320,7 +309,7 @@ class RunJournal:
             columns = {field: shape[0] for field, shape in frame.shapes.items() if len(shape) == 2}
             if columns != sizes or len(frame.shapes.get("state", (0,))) != 1:
                 raise ValueError(f"its frame {number} is not of its scene")
-        if self.lengths["time"] > self.scene.run.sample_count:
+        if sum(self._lengths("samples")) > self.scene.run.sample_count:
             raise ValueError("it has more samples than its scene")
 
     def _lengths(self, field: str) -> list[int]:

@@ -119,7 +119,7 @@ class RunCache:
         key = self.key(scene)
         try:
             if self._journal is None:
-                self._journal = _begun(self.path)
+                self._journal = Journal.create(self.path, "runs")
             self._runs[key] = self._journal.append({"key": key, **header}, tables).begin
         except OSError as error:
             if not self._warned:
@@ -177,36 +177,21 @@ class RunCache:
 
     def _open(self) -> None:
         """Find the runs in the journal that is there; those that are altered are warned of."""
+        altered = 0
         try:
-            self._journal = Journal(self.path, "a")
-            frames = self._journal.frames()
-            head = next(frames, None)
-            if head is None or head.header.get("kind") != "runs":
-                raise ValueError("it is of a single run, or altered at its head")
-            altered = 0
-            for frame in frames:
+            self._journal = Journal(self.path, "runs", "a")
+            for frame in self._journal.frames():
                 if frame is None:
                     altered += 1
                 else:
                     self._runs[str(frame.header["key"])] = frame.begin
-        except (OSError, ValueError, KeyError) as error:
+        except (OSError, ValueError, KeyError, TypeError) as error:
             self.close()
             self._obstacle = f"{self.path.name} beside it has no runs of a sweep or study ({error})"
             return
         if altered:
             what = f"{altered} of the runs kept in {self.path} are damaged"
             warnings.warn(f"{what}: they are ignored and computed again", stacklevel=2)
-
-
-def _begun(path: Path) -> Journal:
-    """Make the journal of a sweep or a study."""
-    journal = Journal(path, "w")
-    try:
-        journal.append({"kind": "runs"}, {})
-    except OSError:
-        journal.close()
-        raise
-    return journal
 
 
 def _refuse_older(archive: Path) -> None:
