@@ -1,4 +1,4 @@
-"""What two options cost: coverage by tooth and place over a uniform fraction, and exposures over none.
+"""What options cost: coverage by tooth and place over a uniform fraction, exposures over none, hubs that age over others.
 
 Both runs of a comparison are made in turn, in one process, many times; the result is the median ratio of the
 processor time of a step. A table whose fractions are all equal gives the motion of the uniform fraction, but for
@@ -92,6 +92,15 @@ def _exposures(speed: str, duration: float, fraction: float) -> Comparison:
     return Comparison(f"exposures, {speed} speed, {fraction:.0%}", plain, other)
 
 
+def _ageing(speed: str, duration: float) -> Comparison:
+    """Compare hubs whose friction ages with hubs of a constant coefficient."""
+    radii = {"gears.pinion_hub_radius": 3e-6, "gears.gear_hub_radius": 6e-6}
+    plain = _scene(speed, duration, {"gears.hub_friction": 0.2, **radii})
+    ages = {"hub_friction_rise": 0.1, "hub_ageing_time": 1e-3, "hub_memory_length": 50e-9}
+    other = plain.replace({f"gears.{key}": value for key, value in ages.items()})
+    return Comparison(f"hubs that age, {speed} speed", plain, other)
+
+
 COMPARISONS: Final = (
     _table("high", 1e-3, 0.6, "patches"),
     _table("high", 1e-3, 0.6, "independent"),
@@ -102,6 +111,8 @@ COMPARISONS: Final = (
     _exposures("low", 1.5, 1.0),
     _exposures("low", 0.3, 0.6),
     _exposures("low", 0.3, 0.3),
+    _ageing("high", 1e-3),
+    _ageing("low", 0.3),
 )
 """Of ten thousand to a hundred and forty thousand steps each; the last is the whole run of the preset."""
 

@@ -11,6 +11,7 @@ import math
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from gearidae.asperities import law_of_tip
 from gearidae.asperities.tip import asperity_of
 from gearidae.contact.line import line_force
 from gearidae.mesh import curvature_radii, separation
@@ -23,8 +24,9 @@ class SlowGears:
 
     def __init__(self, scene):
         self.scene, self.geometry = scene, scene.geometry
+        self.law = scene.contact.asperity
         self.materials = [
-            (surface, part, asperity_of(surface).stretch_limit, offset, name)
+            (surface, part, self.stretch_limit(surface), offset, name)
             for surface, part, offset, name in scene.materials()
             if part > 0
         ]
@@ -36,6 +38,11 @@ class SlowGears:
         relief, _ = separation(self.geometry, phase * pitch, scene.mesh.tip_relief_radius)
         u = 0.5 * scene.mesh.backlash + float(relief) - start.gap
         self.start = np.array([u, 0.0, phase * pitch / r2, start.gear_speed])
+
+    def stretch_limit(self, surface):
+        """By how much an asperity stretches beyond its joining before it detaches [m]."""
+        law = law_of_tip(self.law, asperity_of(surface), 1.0)
+        return law.detach - law.join
 
     def gap(self, pair, u, angle):
         pitch, r2 = self.geometry.base_pitch, self.geometry.base_radius_gear
@@ -73,7 +80,7 @@ class SlowGears:
                 width = self.scene.gears.face_width
                 if self.scene.coating.by_place:
                     part = self.share(m, pair, xi)
-                load = part * float(line_force(gap + offset, gap - joined, radius, width, surface))
+                load = part * float(line_force(gap + offset, gap - joined, radius, width, surface, self.law))
                 force += load
                 relief += load * slope
         return force, relief
