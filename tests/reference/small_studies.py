@@ -10,6 +10,14 @@ LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 4e-3, "run.
 HIGH = gd.preset("teodorescu2009")
 LAW = gd.wear.loss_law("adhesion_work", energy=1e-6)
 WINDOWS = {"cycles": 2, "settle": 1, "starts": 1, "places": 2, "fraction": 0.695, "tolerance": 0.1}
+AGEING = {
+    "gears.hub_friction": 0.2,
+    "gears.hub_friction_rise": 0.1,
+    "gears.hub_ageing_time": 1e-3,
+    "gears.hub_memory_length": 50e-9,
+    "gears.pinion_hub_radius": 3e-6,
+    "gears.gear_hub_radius": 6e-6,
+}
 DRAWN = {"drive.torque": "uniform(4e-18, 5e-18)", "coating.sam_fraction": "uniform(0.5, 1)"}
 
 
@@ -75,22 +83,19 @@ def starting_torque(path, scene=LOW, **more):
 
 
 def starting_rests(path, scene=LOW, **more):
-    ageing = {
-        "gears.hub_friction": 0.2,
-        "gears.hub_friction_rise": 0.1,
-        "gears.hub_ageing_time": 1e-3,
-        "gears.hub_memory_length": 50e-9,
-        "gears.pinion_hub_radius": 3e-6,
-        "gears.gear_hub_radius": 6e-6,
-        "coating.sam_fraction": 0.45,
-    }
+    bare = scene.replace({**AGEING, "coating.sam_fraction": 0.45})
     options = {"impacts": 1, "tolerance": 1.0, "rest_time": [0.0, 1.0]}
-    return gd.studies.starting_torque(scene.replace(ageing), "own", **options, archive=path, **more)
+    return gd.studies.starting_torque(bare, "own", **options, archive=path, **more)
 
 
 def starting_torques(path, scene=HIGH, **more):
     gears = scene.replace({"contact.roughness": "discrete", "load.torque": 0.0})
     return gd.studies.starting_torque(gears, seeds=2, archive=path, **more)
+
+
+def starting_torques_rests(path, scene=HIGH, **more):
+    gears = scene.replace({**AGEING, "contact.roughness": "discrete", "load.torque": 0.0})
+    return gd.studies.starting_torque(gears, seeds=1, rest_time=[0.0, 1.0], archive=path, **more)
 
 
 def sticking_threshold(path, scene=LOW, **more):
@@ -114,6 +119,7 @@ STUDIES = {
         starting_rests,
         starting_torque,
         starting_torques,
+        starting_torques_rests,
         sticking_threshold,
     )
 }

@@ -11,7 +11,12 @@ import gearidae as gd
 from gearidae.cli import main
 from gearidae.mesh.friction import hub_starting_torque
 from gearidae.scene import dump_case
-from gearidae.studies.declared.starting_torque import RESTS, picture_of_rests
+from gearidae.studies.declared.starting_torque import (
+    GEAR_RESTS,
+    RESTS,
+    picture_of_gears,
+    picture_of_rests,
+)
 from gearidae.studies.products import answer, kind_of
 
 AGEING = gd.preset("teodorescu2009").replace(
@@ -80,7 +85,8 @@ def test_its_file_says_what_it_is_and_is_drawn(rests, tmp_path):
     [
         ({"gears.hub_friction_rise": 0.0}, {}, "rest_time"),
         ({}, {"sam_fraction": [1.0, 0.5]}, "sam_fraction"),
-        ({"contact.roughness": "discrete"}, {}, "rest_time"),
+        ({"gears.hub_friction_rise": 0.0, "contact.roughness": "discrete"}, {}, "rest_time"),
+        ({"contact.roughness": "discrete"}, {"sam_fraction": [1.0, 0.5]}, "sam_fraction"),
         ({}, {"rest_time": -1.0}, "initial.rest_time"),
         ({}, {"rest_time": "2 kg"}, "rest_time"),
     ],
@@ -99,3 +105,53 @@ def test_the_command_takes_times_at_rest(tmp_path, capfd):
     assert "after 1 s at rest" in " ".join(capfd.readouterr().out.split())
     assert gd.open(target).rest_time.values.tolist() == [1e-3, 1.0]
     assert main(["plot", str(target), "-o", str(tmp_path / "rests.png")]) == 0
+
+
+# -- populations -----------------------------------------------------------------------------------------------------
+
+GEARS = AGEING.replace(
+    {"contact.roughness": "discrete", "gears.hub_ageing_time": "1 s", "gears.pinion_hub_adhesion": "3 uN"}
+)
+"""Gears that age slowly: next to nothing while the torque rises."""
+LONG = (0.0, 1.0, 1e3)
+
+
+@pytest.fixture(scope="module")
+def gears():
+    return gd.studies.starting_torque(GEARS, rest_time=LONG, seeds=2, jobs=1)
+
+
+def test_gears_of_a_population_start_later_after_a_rest(gears):
+    """Torques are those of hubs of the age at the start, and what the teeth hold through them."""
+    assert gears.starting_torque.dims == ("rest_time", "seed")
+    np.testing.assert_array_equal(gears.rest_time, LONG)
+    mu = 0.2 - 0.7 * np.expm1(-gears.age.values)
+    hubs, constants = (10e-6, 20e-6), mu * 10e-6 * 3e-6
+    resting = [
+        hub_starting_torque(GEARS.geometry, 3e-11, m, hubs, (constant, 0.0))
+        for m, constant in zip(mu.flat, constants.flat, strict=True)
+    ]
+    r1, r2 = GEARS.geometry.base_radius_pinion, GEARS.geometry.base_radius_gear
+    through = (r1 + mu * hubs[0]) / (r2 - mu * hubs[1])
+    teeth = gears.parts.sel(part="adhesion of teeth").values / (r1 / r2) * through
+    np.testing.assert_allclose(gears.starting_torque, np.reshape(resting, mu.shape) + teeth, rtol=1e-9)
+    assert (np.abs(teeth) < 0.1 * gears.starting_torque.values).all()
+    assert float(gears.starting_torque[-1].min()) > 2.0 * float(gears.starting_torque[0].max())
+
+
+def test_joints_of_a_population_age_while_the_torque_rises(gears):
+    ramps = gears.age - gears.rest_time
+    assert (ramps > 0.0).all()
+    assert float(ramps.max()) < 0.5
+
+
+def test_what_is_said_of_gears_that_have_stood(gears, tmp_path):
+    assert kind_of(gears) == "starting_torques_rests"
+    said = answer(gears, "starting_torques_rests")
+    assert said.sentence.startswith("After 1 ks at rest: half of 2 gears of this design start at ")
+    assert any(row[0] == "Starting torque of 2 gears, after no time at rest" for row in said.rows)
+    assert any(row[0] == "age of the joints at the start" for row in said.rows)
+    labels = [line.get_label() for line in picture_of_gears(gears).get_lines()]
+    assert {"after no time at rest", "after 1 s at rest", "after 1 ks at rest"} <= set(labels)
+    gears.to_netcdf(tmp_path / "gears.nc")
+    assert GEAR_RESTS.open(tmp_path / "gears.nc").sizes == gears.sizes

@@ -165,6 +165,11 @@ _HUB_KEYS = {
 """Numbers of a hub, and the ends of their keys."""
 
 
+def ages(scene: Scene) -> bool:
+    """Whether friction of a joint of a scene grows with the time at rest."""
+    return any(joint.rise > 0.0 for joint in joints(scene))
+
+
 def has_joint_friction(scene: Scene) -> bool:
     """Whether a joint of a scene has friction."""
     return any(joint.holding for joint in joints(scene))

@@ -93,8 +93,10 @@ COATINGS: Final[Mapping[str, _Values]] = {
     "FOTAS": {
         "coating.energy": LibraryValue(0.02, "J/m^2", _FLUORINATED, assumed=True),
         "coating.thickness": LibraryValue(1e-9, "m", "as FOTS, whose chain it has", assumed=True),
-        "static friction over sliding friction": LibraryValue(
-            3.0, "1", "Corwin, de Boer 2009, doi:10.1109/JMEMS.2008.2011717: at most, after a long rest"
+        "largest over smallest static friction": LibraryValue(
+            3.0,
+            "1",
+            "Corwin, de Boer 2009, doi:10.1109/JMEMS.2008.2011717: with the rate of unloading after a hold",
         ),
     },
 }

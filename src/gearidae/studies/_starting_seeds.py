@@ -12,14 +12,14 @@ import numpy as np
 import xarray as xr
 
 from gearidae.archive.provenance import provenance
-from gearidae.archive.variables import SAM_FRACTION
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.runs.execution import Execution, SideBySide
 from gearidae.runs.run_cache import RunCache
 from gearidae.runs.running import failure_of
+from gearidae.scene.joints import ages
 from gearidae.scene.quantity import whole
-from gearidae.studies.declared.starting_torque import GEARS, SEEDS, SLOW_ENOUGH
+from gearidae.studies.declared.starting_torque import SEEDS, SLOW_ENOUGH, coordinate
 from gearidae.studies.starting_parts import PARTS, parts_of
 from gearidae.studies.starting_ramp import (
     RESTS,
@@ -32,12 +32,14 @@ from gearidae.studies.starting_ramp import (
     ramp,
     ramp_end,
     ramp_rate,
+    ramp_time,
     run_from_rest,
     seated,
 )
 
 if TYPE_CHECKING:
     from gearidae.scene import GearScene
+    from gearidae.studies.study import Study
 
 log = logging.getLogger(__name__)
 
@@ -127,7 +129,8 @@ class _Runs:
 
 def starting_torques(
     base: GearScene,
-    fractions: Sequence[float],
+    study: Study,
+    points: Sequence[float],
     scenes: Sequence[GearScene],
     seeds: int | None,
     execution: Execution,
@@ -138,8 +141,10 @@ def starting_torques(
     ----------
     base : Scene
         With a population.
-    fractions, scenes
-        Coverages, and the scene with each of them.
+    study : Study
+        Over the coverage or over the time at rest.
+    points, scenes
+        Coverages or times, and the scene with each of them.
     seeds : int or None
         Number of gears, whose seeds count from ``contact.seed`` on; None for `SEEDS`.
     execution : Execution
@@ -157,9 +162,9 @@ def starting_torques(
         usual = _STAGES * count * len(designs)
         with execution.side_by_side(kept, usual) as compute:
             _find_all(designs, _Runs(compute))
-        return _dataset(base, fractions, numbers, designs)
+        return _dataset(base, study, points, numbers, designs)
 
-    return GEARS.compute(execution, base, work, [GEARS.kind, list(fractions), count])
+    return study.compute(execution, base, work, [study.kind, list(points), count])
 
 
 def _find_all(designs: Sequence[_Design], runs: _Runs) -> None:
@@ -207,12 +212,24 @@ def _quantiles(torques: Floats) -> Floats:
     return np.where(np.isfinite(high), between, np.inf)
 
 
+def _parts(design: _Design, torques: Floats, ages_at_start: Floats) -> Floats:
+    """Parts of the torques of the gears; joints that age have grown older while the torque rose."""
+    if not ages(design.scene):
+        return parts_of(design.scene, torques)
+    aged = (design.scene.replace({"initial.rest_time": float(age)}) for age in ages_at_start)
+    return np.stack([parts_of(scene, torque) for scene, torque in zip(aged, torques, strict=True)])
+
+
 def _mean(values: Floats) -> float:
     return float(values.mean()) if values.size else math.nan
 
 
 def _dataset(
-    base: GearScene, shares: Sequence[float], numbers: Sequence[int], designs: Sequence[_Design]
+    base: GearScene,
+    study: Study,
+    points: Sequence[float],
+    numbers: Sequence[int],
+    designs: Sequence[_Design],
 ) -> xr.Dataset:
     places = [place_of_seed(base, number) for number in numbers]
     axes = {"place": np.array(places), "seed": np.array(numbers), "quantile": np.array(QUANTILES)}
@@ -224,8 +241,7 @@ def _dataset(
         "summary": _SUMMARY,
         "drive_torque": base.drive.torque,
     }
-    coverage = ("sam_fraction", np.array(shares), SAM_FRACTION.attributes)
-    return GEARS.dataset(axes | values, attributes).assign_coords(sam_fraction=coverage)
+    return study.dataset(axes | values, attributes).assign_coords(coordinate(study, points))
 
 
 def _columns(designs: Sequence[_Design]) -> dict[str, Any]:
@@ -235,11 +251,16 @@ def _columns(designs: Sequence[_Design]) -> dict[str, Any]:
     finite = np.where(np.isfinite(torques), torques, np.nan)
     quantiles = np.stack([_quantiles(values) for values in torques])
     pitches = [pitch_of(design.scene) for design in designs]
+    ages_at_start = [
+        design.scene.initial.rest_time + ramp_time(pitch, design.scale, design.halvings, design.torques)
+        for pitch, design in zip(pitches, designs, strict=True)
+    ]
     return {
         "starting_torque": finite,
         "starts": starts,
         "quantiles": np.where(np.isfinite(quantiles), quantiles, np.nan),
-        "parts": [parts_of(design.scene, row) for design, row in zip(designs, finite, strict=True)],
+        "parts": [_parts(design, *row) for design, *row in zip(designs, finite, ages_at_start, strict=True)],
+        "age": np.where(np.isfinite(torques), ages_at_start, np.nan),
         "failed": np.isnan(torques),
         "message": [design.messages for design in designs],
         "not_started": np.isinf(torques).sum(axis=1) / (~np.isnan(torques)).sum(axis=1),

@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from gearidae.archive.provenance import provenance
-from gearidae.archive.variables import SAM_FRACTION
 from gearidae.errors import SceneError
 from gearidae.runs.execution import Execution, RunOptions, prepared
 from gearidae.runs.release import holding_forces
@@ -22,11 +21,11 @@ from gearidae.runs.run_cache import RunCache
 from gearidae.runs.running import FAILS, failure_of, solve_to_end, unfinished, unsolved
 from gearidae.scene import require_gears
 from gearidae.scene.carried import numbers_of
-from gearidae.scene.joints import joints
+from gearidae.scene.joints import ages
 from gearidae.scene.quantity import number, switch, whole
 from gearidae.studies._starting_seeds import starting_torques
 from gearidae.studies.bracket import STRIDE, bracket, next_value
-from gearidae.studies.declared.starting_torque import RESTS, STUDY
+from gearidae.studies.declared.starting_torque import GEAR_RESTS, GEARS, RESTS, STUDY, coordinate
 from gearidae.studies.requirements import require_constant
 from gearidae.studies.starting_parts import PARTS, Starting, parts_of
 from gearidae.studies.starting_ramp import nothing_followed, pitch_of
@@ -128,7 +127,7 @@ def starting_torque(
         `lowest`, `simulated` and `tolerance` are not for populations.
     rest_time : array_like, optional
         Times at rest before the start, in seconds or with a unit, in place of ``initial.rest_time``: of hubs or a pin
-        whose friction ages. Neither for populations nor with other fractions of the coating.
+        whose friction ages. Not with other fractions of the coating.
     **options
         ``executor``, ``jobs``, ``backend``, ``progress``, ``archive``, ``overwrite`` and ``resume``, as for `sweep`.
         With ``archive``, finished runs are kept beside it until it is written.
@@ -173,19 +172,21 @@ def starting_torque(
         raise SceneError("tolerance", tolerance, "must lie in 0.001..1")
     base, execution = prepared(scene, options)
     rests = None if rest_time is None else _rests(base, rest_time, sam_fraction)
+    if rests is not None:
+        points, scenes = rests, [base.replace({"initial.rest_time": time}) for time in rests]
+    elif sam_fraction is None and base.contact.is_discrete:
+        points, scenes = _coatings(base, "own")
+    else:
+        points, scenes = _coatings(base, sam_fraction)
     if base.contact.is_discrete:
         _refuse_settings(impacts=impacts, lowest=lowest, simulated=simulated, tolerance=tolerance)
         return starting_torques(
-            base, *_coatings(base, "own" if sam_fraction is None else sam_fraction), seeds, execution
+            base, GEARS if rests is None else GEAR_RESTS, points, scenes, seeds, execution
         )
     if seeds is not None:
         raise SceneError(
             "seeds", seeds, 'needs contact.roughness = "discrete": others do not differ by their seeds'
         )
-    if rests is None:
-        points, scenes = _coatings(base, sam_fraction)
-    else:
-        points, scenes = rests, [base.replace({"initial.rest_time": time}) for time in rests]
     study, least = STUDY if rests is None else RESTS, _lowest(scene, lowest)
 
     def work(kept: RunCache | None) -> xr.Dataset:
@@ -207,11 +208,9 @@ def starting_torque(
 
 def _rests(base: GearScene, rest_time: ArrayLike, sam_fraction: ArrayLike | None) -> list[float]:
     """Read times at rest, and refuse what does not go with them."""
-    if base.contact.is_discrete:
-        raise SceneError("rest_time", rest_time, "is not for a population: set initial.rest_time")
     if sam_fraction is not None and not (isinstance(sam_fraction, str) and sam_fraction == "own"):
         raise SceneError("sam_fraction", sam_fraction, "must be left out with rest_time: one of both varies")
-    if all(joint.rise == 0.0 for joint in joints(base)):
+    if not ages(base):
         allowed = "needs friction that ages: gears.hub_friction_rise or drive.pin_friction_rise"
         raise SceneError("rest_time", rest_time, allowed)
     try:
@@ -254,18 +253,16 @@ def _dataset(
         "parts": np.array([parts_of(search.scene, search.static) for search in searches]),
         "message": np.array([search.failure for search in searches]),
     }
-    if study is RESTS:
-        key, against, about = "initial.rest_time", "time at rest", RESTS.columns["rest_time"].attributes()
-    else:
-        key, against, about = "coating.sam_fraction", "SAM fraction", SAM_FRACTION.attributes
-    dim = key.rpartition(".")[2]
+    key, against = (
+        ("initial.rest_time", "time at rest") if study is RESTS else ("coating.sam_fraction", "SAM fraction")
+    )
     attributes = {
         **provenance(scene, "searched the starting torque", swept=(key,)),
         "title": f"{scene.name}: starting torque",
         "summary": f"Smallest drive torque that keeps the gear turning against adhesion, against {against}.",
         "drive_torque": scene.drive.torque,
     }
-    return study.dataset(values, attributes).assign_coords({dim: (dim, np.array(points), about)})
+    return study.dataset(values, attributes).assign_coords(coordinate(study, points))
 
 
 @dataclass

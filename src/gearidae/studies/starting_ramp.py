@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from gearidae.archive.dataset import reached
+from gearidae.arrays import Floats
 from gearidae.asperities.tip import asperity_of
 from gearidae.errors import SolverError
 from gearidae.laws.pairs import number_of_mesh
@@ -149,12 +150,20 @@ def ramp_end(pitch: Pitch, scale: float) -> float:
 
 def ramp(at: GearScene, scale: float, halvings: int) -> GearScene:
     """Add a torque that rises linearly to a scene from `seated`."""
-    pitch = pitch_of(at)
+    return _driven(at, _rising(pitch_of(at), scale, halvings), _SAMPLES)
+
+
+def ramp_time(pitch: Pitch, scale: float, halvings: int, torques: Floats) -> Floats:
+    """Times at which the torque of a `ramp` reaches given ones [s]; of those beyond it the time of its end."""
+    times, rising = np.array(_rising(pitch, scale, halvings)[1:]).T
+    return np.asarray(np.interp(torques, rising, times))
+
+
+def _rising(pitch: Pitch, scale: float, halvings: int) -> Knots:
     knots = _laying(pitch, _LAYING * scale, _SETTLING * pitch.time(scale))
     time, torque = knots[-1]
     end = ramp_end(pitch, scale)
-    knots.append((time + (end - torque) / ramp_rate(pitch, scale, halvings), end))
-    return _driven(at, knots, _SAMPLES)
+    return [*knots, (time + (end - torque) / ramp_rate(pitch, scale, halvings), end)]
 
 
 def constant(at: GearScene, scale: float, torque: float) -> GearScene:

@@ -83,3 +83,17 @@ def test_contact_and_coast_of_a_drawn_run():
 )
 def test_cheap_rows_print_what_the_page_says(row, printed):
     assert any(printed in line for line in STATEMENTS[row]())
+
+
+@pytest.mark.parametrize("radius_force", [False, True])
+def test_only_freshly_broken_silicon_sticks(radius_force):
+    """Row 10, within the 0.3 s of the figure, with either form of the changing radius."""
+    bare = gd.preset("teodorescu2009_low_speed").replace(
+        {"coating.sam_fraction": 0.0, "run.samples": "off", "mesh.radius_force": radius_force}
+    )
+    verdicts = []
+    for energy in (1.0, 0.8, 0.072):
+        run = gd.simulate(bare.replace({"surface.energy": energy}))
+        verdicts += [outcome.verdict for outcome in gd.outcomes(run)]
+    assert verdicts == ["sticks", "turns smoothly", "turns smoothly"]
+    assert float(run.min_gear_speed) > 1.45  # of the last

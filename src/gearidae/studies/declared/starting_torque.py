@@ -7,11 +7,13 @@ until each has turned one pitch.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import numpy as np
 import xarray as xr
 
+from gearidae.archive.variables import SAM_FRACTION
 from gearidae.errors import SceneError
 from gearidae.scene.pairs import sweep_values
 from gearidae.scene.prefixes import with_prefix
@@ -111,14 +113,19 @@ def _simulated(ds: xr.Dataset) -> xr.DataArray:
     return simulated if np.isfinite(simulated).any() else ds["static_torque"]
 
 
+def _points(ds: xr.Dataset) -> list[tuple[str, xr.Dataset]]:
+    """Coverages or times at rest in words, and what has been found there."""
+    if "rest_time" in ds.dims:
+        points = [ds.isel(rest_time=number) for number in range(ds.sizes["rest_time"])]
+        return [(f"after {_time(float(point['rest_time']))} at rest", point) for point in points]
+    points = [ds.isel(sam_fraction=number) for number in range(ds.sizes["sam_fraction"])]
+    return [(f"SAM {100.0 * float(point['sam_fraction']):.4g} %", point) for point in points]
+
+
 def _rows(ds: xr.Dataset) -> Rows:
-    """Torques at each coverage."""
+    """Torques at each coverage or after each rest."""
     yield "Starting torque on the pinion", "simulated", "sticks at, and without inertia"
-    along = "sam_fraction" if "sam_fraction" in ds.dims else "rest_time"
-    for number in range(ds.sizes[along]):
-        point = ds.isel({along: number})
-        value = float(point[along])
-        name = f"SAM {100.0 * value:.4g} %" if along == "sam_fraction" else f"after {_time(value)} at rest"
+    for name, point in _points(ds):
         turns, sticks, static = (
             with_prefix(float(point[which]), "N m", 4)
             for which in ("simulated_torque", "simulated_stuck", "static_torque")
@@ -144,11 +151,13 @@ def _parts(parts: xr.DataArray, words: str) -> Rows:
 
 
 def _gears_sentence(ds: xr.Dataset) -> str:
-    """Say what the gears of the worst coverage need, and how many of them the drive starts."""
-    worst = ds.isel(sam_fraction=int(np.argmin(ds["sam_fraction"].values)))
-    count, coated = _followed(worst), f"SAM {100.0 * float(worst['sam_fraction']):.4g} %"
-    middle = _torque(worst["quantiles"].sel(quantile=0.5), worst)
-    sentence = f"{coated}: half of {count} gears of this design start at {middle} on the pinion"
+    """Say what the gears of the worst coverage or after the longest rest need, and how many the drive starts."""
+    longest = -ds["rest_time"] if "rest_time" in ds.dims else ds["sam_fraction"]
+    name, worst = _points(ds)[int(np.argmin(longest.values))]
+    count, middle = _followed(worst), _torque(worst["quantiles"].sel(quantile=0.5), worst)
+    sentence = (
+        f"{name[0].upper()}{name[1:]}: half of {count} gears of this design start at {middle} on the pinion"
+    )
     drive = float(ds.attrs.get("drive_torque", math.nan))
     if not drive > 0.0:
         return f"{sentence}."
@@ -157,12 +166,11 @@ def _gears_sentence(ds: xr.Dataset) -> str:
 
 
 def _gears_rows(ds: xr.Dataset) -> Rows:
-    """Quantiles, gears that did not start, chance at the drive's own torque, and rate, at each coverage."""
+    """Quantiles, gears that did not start, chance at the drive's own torque, and rate, at each point."""
     drive = float(ds.attrs.get("drive_torque", math.nan))
-    for number in range(ds.sizes["sam_fraction"]):
-        point = ds.isel(sam_fraction=number)
+    for name, point in _points(ds):
         count = _followed(point)
-        yield f"Starting torque of {count} gears, SAM {100.0 * float(point['sam_fraction']):.4g} %", "", ""
+        yield f"Starting torque of {count} gears, {name}", "", ""
         for share in point["quantile"].values.tolist():
             below = f"{100.0 * share:.0f} % of the gears start below"
             yield below, _torque(point["quantiles"].sel(quantile=share), point), ""
@@ -185,6 +193,9 @@ def _gears_rows(ds: xr.Dataset) -> Rows:
         words = f"twice this rate changes the median by {100.0 * change:.2g} %"
         words += "" if change < SLOW_ENOUGH else ": not slow enough to rely on it"
         yield "rate of the torque", f"{with_prefix(1e-3 * float(point['rate']), 'N m', 3)} per ms", words
+        if "age" in point and np.isfinite(point["age"]).any():
+            age = float(point["age"].median("seed", skipna=True))
+            yield "age of the joints at the start", _time(age), "median of the gears that start"
         yield (
             "damping of the mesh",
             f"{float(point['damping']):.3g} N s/m",
@@ -317,7 +328,7 @@ def _torques_over(ds: xr.Dataset, places: Floats, ax: Axes | None) -> Axes:
 
 
 def picture_of_gears(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
-    """Draw the distribution function of a population's starting torques, a line for each coverage.
+    """Draw the distribution function of a population's starting torques, a line for each coverage or time at rest.
 
     Parameters
     ----------
@@ -348,13 +359,13 @@ def picture_of_gears(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
         tidy,
     )
 
-    GEARS.require(ds)
+    (GEAR_RESTS if "rest_time" in ds.dims else GEARS).require(ds)
     if not np.isfinite(ds["starting_torque"]).any():
         raise SceneError("plot", "starting_torques", "no gear has started")
     ax = new_axes(ax, height=3.8)
     count = ds.sizes["seed"]
-    for number in range(ds.sizes["sam_fraction"]):
-        torques = ds["starting_torque"].isel(sam_fraction=number)
+    for number, (name, point) in enumerate(_points(ds)):
+        torques = point["starting_torque"]
         torque = np.sort(torques.values[np.isfinite(torques.values)])
         ax.step(
             torque,
@@ -364,7 +375,7 @@ def picture_of_gears(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
             linestyle=line_style(number),
             marker=".",
             linewidth=line_width(1.2),
-            label=f"SAM {100.0 * float(torques['sam_fraction']):.4g} %",
+            label=name,
         )
     ax.set_xscale("log")
     ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
@@ -391,6 +402,56 @@ def _torque_columns(along: tuple[str]) -> dict[str, Column]:
         "part": Column(("part",), "", "what takes a starting torque", required=False),
         "message": Column(along, "", "how the run of a torque has failed", required=False),
     }
+
+
+def _gear_columns(along: tuple[str]) -> dict[str, Column]:
+    """Columns of a population's starting torques along the coverage or the time at rest."""
+    return {
+        "starting_torque": Column(
+            (*along, "seed"), "N m", "torque at the last moment of rest; NaN if the gear did not start"
+        ),
+        "starts": Column(
+            (*along, "seed"), "1", "whether the drive's own torque turns the gear from rest by one pitch"
+        ),
+        "failed": Column(
+            (*along, "seed"),
+            "1",
+            "whether the run of the gear could not be finished: shares are those of the others",
+            required=False,
+        ),
+        "parts": Column(
+            (*along, "seed", "part"), "N m", "what each part takes of the starting torque", required=False
+        ),
+        "part": Column(("part",), "", "what takes a starting torque", required=False),
+        "age": Column(
+            (*along, "seed"),
+            "s",
+            "age of the joints at the last moment of rest: the time at rest before, and in the run",
+            required=False,
+        ),
+        "message": Column((*along, "seed"), "", "how the run of the gear has failed", required=False),
+        "place": Column(("seed",), "1", "place of the start, in pitches", required=False),
+        "quantiles": Column(
+            (*along, "quantile"),
+            "N m",
+            "quantiles of the starting torque, gears that did not start included; NaN beyond the ramp",
+        ),
+        "not_started": Column(along, "1", "share that had not started when the ramp ended"),
+        "chance": Column(along, "1", "share that the drive's own torque starts"),
+        "rate": Column(along, "N m s-1", "rise of the torque"),
+        "ramp_end": Column(along, "N m", "torque at which the ramp ended", required=False),
+        "median_change": Column(along, "1", "relative change of the median from twice this rate"),
+        "damping": Column(along, "N s m-1", "damping of the mesh"),
+        "seed": Column(("seed",), "1", "contact.seed of the gear", required=False),
+        "quantile": Column(("quantile",), "1", "share of the gears below", required=False),
+    }
+
+
+def coordinate(study: Study, points: Sequence[float]) -> dict[str, tuple[str, Floats, dict[str, str]]]:
+    """Coordinate of one of these studies: its coverages, or its times at rest."""
+    if "rest_time" in study.columns:
+        return {"rest_time": ("rest_time", np.array(points), study.columns["rest_time"].attributes())}
+    return {"sam_fraction": ("sam_fraction", np.array(points), SAM_FRACTION.attributes)}
 
 
 STUDY = Study(
@@ -433,42 +494,28 @@ GEARS = Study(
     kind="starting_torques",
     words="study of a population's starting torques",
     maker="starting-torque",
-    columns={
-        "starting_torque": Column(
-            (*_ALONG, "seed"), "N m", "torque at the last moment of rest; NaN if the gear did not start"
-        ),
-        "starts": Column(
-            (*_ALONG, "seed"), "1", "whether the drive's own torque turns the gear from rest by one pitch"
-        ),
-        "failed": Column(
-            (*_ALONG, "seed"),
-            "1",
-            "whether the run of the gear could not be finished: shares are those of the others",
-            required=False,
-        ),
-        "parts": Column(
-            (*_ALONG, "seed", "part"), "N m", "what each part takes of the starting torque", required=False
-        ),
-        "part": Column(("part",), "", "what takes a starting torque", required=False),
-        "message": Column((*_ALONG, "seed"), "", "how the run of the gear has failed", required=False),
-        "place": Column(("seed",), "1", "place of the start, in pitches", required=False),
-        "quantiles": Column(
-            (*_ALONG, "quantile"),
-            "N m",
-            "quantiles of the starting torque, gears that did not start included; NaN beyond the ramp",
-        ),
-        "not_started": Column(_ALONG, "1", "share that had not started when the ramp ended"),
-        "chance": Column(_ALONG, "1", "share that the drive's own torque starts"),
-        "rate": Column(_ALONG, "N m s-1", "rise of the torque"),
-        "ramp_end": Column(_ALONG, "N m", "torque at which the ramp ended", required=False),
-        "median_change": Column(_ALONG, "1", "relative change of the median from twice this rate"),
-        "damping": Column(_ALONG, "N s m-1", "damping of the mesh"),
-        "seed": Column(("seed",), "1", "contact.seed of the gear", required=False),
-        "quantile": Column(("quantile",), "1", "share of the gears below", required=False),
-    },
+    columns=_gear_columns(_ALONG),
     sentence=_gears_sentence,
     rows=_gears_rows,
     pictures=(
         Picture("starting_torques", "Share of the gears that start below a torque", draw=picture_of_gears),
+    ),
+)
+GEAR_RESTS = Study(
+    kind="starting_torques_rests",
+    words="study of a population's starting torques over the time at rest",
+    maker="starting-torque --rest",
+    columns={
+        "rest_time": Column(_AFTER, "s", "time at rest before the start"),
+        **_gear_columns(_AFTER),
+    },
+    sentence=_gears_sentence,
+    rows=_gears_rows,
+    pictures=(
+        Picture(
+            "starting_torques_rests",
+            "Share of the gears that have stood which start below a torque",
+            draw=picture_of_gears,
+        ),
     ),
 )
