@@ -19,6 +19,13 @@ def test_a_fault_is_caught(mutant):
     assert catch(mutant, compiled=False).startswith(mutant.tests[0])
 
 
+def test_the_page_lists_the_faults_of_the_catalogue():
+    text = (ROOT / "docs" / "mutants.md").read_text(encoding="utf-8")
+    rows = [line.split(" | ") for line in text.splitlines() if line.startswith("| ")][1:]
+    assert [row[0].removeprefix("| ") for row in rows] == [mutant.what for mutant in MUTANTS]
+    assert f"**{len(MUTANTS)} faults, 0 not caught.**" in text
+
+
 def test_a_fault_that_nothing_tests_is_listed():
     text = page({"a": "contact/test_jkr.py::test_x", "b": "not caught"})
     assert "2 faults, 1 not caught" in text

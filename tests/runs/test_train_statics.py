@@ -9,6 +9,7 @@ import pytest
 from tests.reference.trains import HUBS, chain, compound, split
 
 import gearidae as gd
+from gearidae.runs import train_statics
 from gearidae.runs.train_statics import (
     hub_loads,
     levers,
@@ -55,6 +56,17 @@ def test_a_split_path_of_rough_teeth_shares_to_the_nanometre(offset, share):
     assert forces[:2].sum() == pytest.approx(3.456719e-7, rel=1e-7, abs=0.0)
     assert forces[0] / forces[:2].sum() == pytest.approx(share, abs=6e-9)
     assert forces[2:] == pytest.approx(forces[:2], rel=1e-9)
+
+
+def test_forces_of_a_loop_that_are_not_found_are_no_numbers(monkeypatch):
+    monkeypatch.setattr(train_statics, "_NEWTON", 2)
+    with pytest.raises(gd.SolverError, match=r"^forces of a train with a loop were not found"):
+        mesh_forces(Scene.from_dict(split()))
+
+
+def test_a_loop_without_torques_carries_nothing():
+    still = Scene.from_dict(split()).replace({"drive": {"torque": 0.0}, "load": None})
+    assert mesh_forces(still).tolist() == [0.0] * 4
 
 
 def test_modes_are_coupled_by_the_idler():

@@ -436,6 +436,32 @@ def test_a_pair_has_shafts_meshes_and_a_train():
         _ = preset("roller_slow").train
 
 
+@pytest.mark.parametrize(
+    ("keys", "refused"),
+    [
+        ({"gear_spring": 1e-13}, "gear_spring"),
+        ({"pinion_spring": 1e-12, "pinion_spring_damping": 1e-18}, "pinion_spring"),
+        (
+            {
+                "hub_friction_rise": 0.1,
+                "hub_ageing_time": 1e-3,
+                "hub_memory_length": 5e-8,
+                "gear_hub_radius": 6e-6,
+            },
+            "hub_friction_rise",
+        ),
+    ],
+)
+def test_what_shafts_of_a_train_lack_is_not_lost(keys, refused):
+    """Springs and ageing are keys of a pair alone."""
+    scene = short(**{f"gears.{key}": value for key, value in keys.items()})
+    for table in ("shafts", "train"):
+        with pytest.raises(
+            gd.SceneError, match=rf"^gears\.{refused} = .*: must be 0 where a pair is to be a train"
+        ):
+            getattr(scene, table)
+
+
 def test_stages_are_pairs_with_their_own_tables():
     scene = scene_of(chain()).replace(CHANGES)
     stage = scene.pair("second")

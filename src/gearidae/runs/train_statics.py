@@ -18,6 +18,7 @@ from typing import Final
 import numpy as np
 
 from gearidae.arrays import Floats
+from gearidae.errors import SolverError
 from gearidae.mesh.involute import curvature_radii, separation
 from gearidae.mesh.pair_contact import PairContact, pair_contact
 from gearidae.runs.estimates import mean_over_run
@@ -110,7 +111,7 @@ def mesh_forces(scene: TrainScene) -> Floats:
     arms, outside = levers(train), -taken
     outside[train.drive] += torque
     # what every shaft is short of is what its meshes have to give; the equations add up to 0 by the ratios
-    if len(train.meshes) == len(train.shafts) - 1:
+    if len(train.meshes) == len(train.shafts) - 1 or not outside.any():
         return np.asarray(np.linalg.lstsq(arms.T, outside, rcond=None)[0])
     return _shared(scene, arms, outside, torque)
 
@@ -123,7 +124,13 @@ def stages(scene: TrainScene) -> Iterator[tuple[str, GearScene]]:
 
 
 def _shared(scene: TrainScene, arms: Floats, outside: Floats, torque: float) -> Floats:
-    """Forces of a train with loops: angles of the shafts at which the contacts balance all torques, by Newton."""
+    """Forces of a train with loops: angles of the shafts at which the contacts balance all torques, by Newton.
+
+    Raises
+    ------
+    SolverError
+        If no such angles are found.
+    """
     train = scene.train
     contacts = [_Mesh(scene, mesh) for mesh in train.meshes]
     sigma = np.array([mesh.surface.roughness for mesh in train.meshes])
@@ -139,11 +146,18 @@ def _shared(scene: TrainScene, arms: Floats, outside: Floats, torque: float) -> 
         forces, stiffness = np.array([c.force(u) for c, u in zip(contacts, errors, strict=True)]).T
         left = outside - arms.T @ forces
         if np.abs(left).max() <= _BALANCED * abs(torque):
-            break
+            return np.asarray(forces)
         change = np.linalg.lstsq(arms.T @ (stiffness[:, None] * arms), left, rcond=1e-14)[0]
         step = np.abs(arms @ change) / sigma
         angles = angles + change * min(1.0, _LONGEST / max(step.max(), 1e-30))
-    return np.asarray(forces)
+    short = np.abs(left).max() / abs(torque)
+    raise SolverError(
+        f"forces of a train with a loop were not found: a shaft lacks {short:.2g} of the drive's torque",
+        time=0.0,
+        state={},
+        last_event="none",
+        advice="check the torques, and the offsets and surfaces of the meshes",
+    )
 
 
 class _Mesh:

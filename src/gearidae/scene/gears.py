@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Final
 
 from pydantic import Field, create_model, model_validator
 
@@ -54,6 +54,11 @@ def _keys_of_laws() -> dict[str, Any]:
         if (key := constant.key) is not None
         for shaft in SHAFT_NAMES
     }
+
+
+_LAW_FIELDS: Final = _keys_of_laws()
+LAW_KEYS: Final = tuple(_LAW_FIELDS)
+"""Keys of ``gears`` that are those of a law of a shaft."""
 
 
 class PairOfGears(Group):
@@ -163,7 +168,7 @@ class PairOfGears(Group):
 if TYPE_CHECKING:
     _WithLaws = PairOfGears
 else:
-    _WithLaws = create_model("_WithLaws", __base__=PairOfGears, __module__=__name__, **_keys_of_laws())
+    _WithLaws = create_model("_WithLaws", __base__=PairOfGears, __module__=__name__, **_LAW_FIELDS)
 
 
 class Gears(_WithLaws):

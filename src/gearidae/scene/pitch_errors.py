@@ -41,18 +41,19 @@ _MOST_TEETH: Final = 10_000
 _LARGEST: Final = 5_000_000  # bytes of a file
 _NAME: Final = "error"
 """Heading, before its unit, of the column of a file that has others besides."""
+_ALLOWED: Final = 'must be a list of errors, one for each tooth, or { file = "name.csv" }'
 
 
 def _as_errors(value: object) -> object:
     """Turn a file's column, an array or numbers with units into a list; what it holds is read later."""
     if isinstance(value, Mapping):
         if set(value) != {"file"} or not isinstance(value["file"], str | Path):
-            raise ValueError('must be a list of errors, one for each tooth, or { file = "name.csv" }')
+            raise ValueError(_ALLOWED)
         return _column(Path(value["file"]))
     if hasattr(value, "tolist") or hasattr(value, "magnitude"):
         value = numbers_of(value, "m").tolist()
     if not isinstance(value, (list, tuple)):
-        raise ValueError('must be a list of errors, one for each tooth, or { file = "name.csv" }')
+        raise ValueError(_ALLOWED)
     if len(value) > _MOST_TEETH:
         raise ValueError(f"has {len(value)} errors; there may be {_MOST_TEETH} at most")
     return tuple(value)

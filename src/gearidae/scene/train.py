@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any, Final
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import Geometry, GeometryError, mesh_geometry
 from gearidae.scene.coating import Coating
-from gearidae.scene.gears import Mesh, disc_inertia
+from gearidae.scene.gears import LAW_KEYS, Mesh, disc_inertia
 from gearidae.scene.group import did_you_mean
 from gearidae.scene.named_tables import NamedTables
 from gearidae.scene.phases import with_phases
@@ -159,7 +159,17 @@ class Train:
 
 
 def pair_shafts(gears: Gears) -> NamedTables[Shaft]:
-    """Write a pair of gears as two shafts, ``pinion`` and ``gear``."""
+    """Write a pair of gears as two shafts, ``pinion`` and ``gear``.
+
+    Raises
+    ------
+    SceneError
+        If the pair has what the shafts of a train have no keys for.
+    """
+    for key in _OF_PAIRS:
+        if (value := getattr(gears, key)) > 0.0:
+            reason = "must be 0 where a pair is to be a train, whose shafts have no such key"
+            raise SceneError(f"gears.{key}", value, reason)
     shafts = {
         name: Shaft(
             inertia=getattr(gears, f"{name}_inertia"),
@@ -184,6 +194,8 @@ def pair_meshes(gears: Gears, mesh: Mesh) -> NamedTables[Meshing]:
 
 
 _HUB_KEYS: Final = ("hub_radius", "hub_adhesion", "axial_load", "dimple_radius")
+_OF_PAIRS: Final = ("hub_friction_rise", *LAW_KEYS)
+"""Keys of a pair that act on its shafts, and that a train does not have."""
 
 
 def _has_joint(gears: Gears, shaft: str) -> bool:
