@@ -58,10 +58,10 @@ def check_seal(path: Path) -> None:
         tail = file.read()
     if (place := tail.rfind(_MARK)) < 0:
         return
-    length, seal = size - len(tail) + place, tail[place + len(_MARK) :]
-    if len(seal) != _SEAL - len(_MARK) or int.from_bytes(seal[:8], "little") != length:
+    length, numbers = size - len(tail) + place, tail[place + len(_MARK) :]
+    if len(numbers) != _SEAL - len(_MARK) or int.from_bytes(numbers[:8], "little") != length:
         raise ValueError("its end is missing or altered")
-    if _checksum_of(path, length) != int.from_bytes(seal[8:], "little"):
+    if _checksum_of(path, length) != int.from_bytes(numbers[8:], "little"):
         raise ValueError("its bytes have been altered since it was written")
 
 
@@ -143,8 +143,7 @@ def _checksum(*values: Any) -> int:
         if array.dtype.kind in "fiub":
             content = array.astype("<f8" if array.dtype.kind == "f" else "<i8").tobytes()
         else:
-            content = json.dumps(
-                [str(entry) for entry in array.tolist()]
-            ).encode()  # ends of texts are told apart
+            # in JSON the ends of texts are told apart
+            content = json.dumps([str(entry) for entry in array.tolist()]).encode()
         checksum = zlib.crc32(content, checksum)
     return checksum

@@ -103,16 +103,12 @@ def _hubs(scene: TrainScene, forces: Floats) -> Facts:
     """Loads of the hubs, and the torque that starts the train against them."""
     vectors = hub_loads(scene.train, forces)
     for (name, shaft), vector in zip(scene.shafts.items(), vectors, strict=True):
-        if shaft.hub_radius == 0.0 and shaft.dimple_radius == 0.0:
+        if (hub := shaft.hub) is None:
             continue
-        load = math.hypot(*vector)
-        torque = shaft.hub_friction * (
-            shaft.hub_radius * (load + shaft.hub_adhesion) + shaft.dimple_radius * shaft.axial_load
-        )
-        angle = math.atan2(vector[1], vector[0])
-        words = (
-            f"friction takes {torque:.4g} N m" if scene.drive.law is None else "without the force of the law"
-        )
+        load, angle = math.hypot(*vector), math.atan2(vector[1], vector[0])
+        words = "without the force of the law"
+        if scene.drive.law is None:
+            words = f"friction takes {hub.torque(load):.4g} N m"
         text = f"{load * 1e6:.4g} uN at {math.degrees(angle):.4g} deg"
         yield Fact(f"load of the hub of {name}", text, words, load, "N")
     if not any(shaft.hub_friction for shaft in scene.shafts.values()) or scene.drive.law is not None:

@@ -251,14 +251,12 @@ def starting_torque(scene: TrainScene) -> tuple[float, Floats]:
     dry = _resistances(scene)[0]
     shafts = list(scene.shafts.values())
     for number in reversed(_outwards(train)):
-        shaft = shafts[number]
+        hub = shafts[number].hub
         driven = [k for k, mesh in enumerate(train.meshes) if mesh.a == number]
         pushed = sum((forces[k] * line_of_action(train, train.meshes[k]) for k in driven), np.zeros(2))
-        constant = dry[number] + shaft.hub_friction * (
-            shaft.hub_radius * shaft.hub_adhesion + shaft.dimple_radius * shaft.axial_load
-        )
+        constant = dry[number] + (0.0 if hub is None else hub.torque(0.0))
         constant += sum(train.meshes[k].geometry.base_radius_pinion * forces[k] for k in driven)
-        arm = shaft.hub_friction * shaft.hub_radius
+        arm = 0.0 if hub is None else hub.arm
         if number == train.drive:
             return float(constant + arm * math.hypot(*pushed)), forces
         mine = next(k for k, mesh in enumerate(train.meshes) if mesh.b == number)

@@ -10,15 +10,23 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from gearidae.errors import SceneError
 
 if TYPE_CHECKING:
     from gearidae.scene.train import TrainMesh
 
-_WHOLE = 1e-12
+_WHOLE: Final = 1e-12
 """A phase this little below a whole pitch is 0: rounding alone keeps it there."""
+
+
+class _Met(NamedTuple):
+    """A gear in the first of its meshes: p, the direction to the other gear [rad], and whether it is driven there."""
+
+    place: float
+    direction: float
+    driven: bool
 
 
 def with_phases(
@@ -57,9 +65,7 @@ def with_phases(
         If a phase is given where it follows, or a loop cannot be assembled.
     """
     order = _from_the_drive(meshes, drive)
-    known: dict[
-        str, tuple[float, float, bool]
-    ] = {}  # of each gear: p, its direction, whether it is driven there
+    known: dict[str, _Met] = {}
     phases: dict[int, float] = {}
     residuals: dict[int, float] = {}
     source: dict[str, str] = {}
@@ -89,7 +95,7 @@ def with_phases(
             residuals[number] = 0.5 - (0.5 - (follow["driven"] - follow["driver"])) % 1.0
         for side, gear in (("driven", mesh.driven), ("driver", mesh.driver)):
             direction = mesh.angle + math.pi * (side == "driven")
-            known.setdefault(gear, (phases[number] - _zero(mesh, side, gap), direction, side == "driven"))
+            known.setdefault(gear, _Met(phases[number] - _zero(mesh, side, gap), direction, side == "driven"))
             source.setdefault(gear, mesh.name)
     for number, residual in residuals.items():
         _check_residual(meshes[number], residual)
@@ -117,7 +123,7 @@ def _from_the_drive(meshes: Sequence[TrainMesh], drive: int) -> list[int]:
 def _next(
     left: Sequence[int],
     meshes: Sequence[TrainMesh],
-    known: dict[str, tuple[float, float, bool]],
+    known: dict[str, _Met],
     given: Sequence[float | None],
 ) -> tuple[int, int]:
     """Choose the mesh whose phase is next, and the number of its gears that are known.
@@ -155,17 +161,15 @@ def _zero(mesh: TrainMesh, side: str, gap: float) -> float:
     return (geometry.approach - back) / geometry.base_pitch
 
 
-def _follow(
-    mesh: TrainMesh, side: str, gear: tuple[float, float, bool], senses: Sequence[int], gap: float
-) -> float:
+def _follow(mesh: TrainMesh, side: str, gear: _Met, senses: Sequence[int], gap: float) -> float:
     """Phase of a mesh as it follows from one of its gears."""
-    place, known, was_driven = gear
     driven = side == "driven"
     teeth = mesh.geometry.gear_teeth if driven else mesh.geometry.pinion_teeth
     sense = senses[mesh.b if driven else mesh.a]
     direction = mesh.angle + math.pi * driven
-    half = 0.5 * (driven != was_driven)
-    return place + half + teeth * sense * (known - direction) / (2.0 * math.pi) + _zero(mesh, side, gap)
+    half = 0.5 * (driven != gear.driven)
+    turned = teeth * sense * (gear.direction - direction) / (2.0 * math.pi)
+    return gear.place + half + turned + _zero(mesh, side, gap)
 
 
 def _wrapped(phase: float) -> float:

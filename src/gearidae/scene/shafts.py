@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, Self
+from typing import TYPE_CHECKING, Annotated, Any, Final, Self
 
 from pydantic import Field, create_model, model_validator
 
@@ -10,10 +10,14 @@ from gearidae.errors import SceneError
 from gearidae.scene.coating import Coating
 from gearidae.scene.gears import HubRadius, JointForce, Mesh, Teeth
 from gearidae.scene.group import Group, shorten
+from gearidae.scene.joints import Joint
 from gearidae.scene.knots import Resistance
 from gearidae.scene.named_tables import NamedTables
 from gearidae.scene.quantity import Count, Quantity
 from gearidae.scene.surface import Friction, Surface
+
+HUB_KEYS: Final = ("hub_radius", "hub_adhesion", "axial_load", "dimple_radius")
+"""Keys of the hub of a shaft that a pair has for its pinion and its gear."""
 
 
 class Shaft(Group):
@@ -62,6 +66,20 @@ class Shaft(Group):
         if self.hub_friction > 0.0 and self.hub_radius == 0.0 and self.dimple_radius == 0.0:
             raise SceneError("hub_radius", 0.0, "a hub or a dimple must have a radius with hub_friction")
         return self
+
+    @property
+    def hub(self) -> Joint | None:
+        """Its hub; None of a shaft without a radius at which a hub or dimples slide."""
+        if self.hub_radius == 0.0 and self.dimple_radius == 0.0:
+            return None
+        return Joint(
+            "hub",
+            self.hub_friction,
+            self.hub_radius,
+            adhesion=self.hub_adhesion,
+            axial_load=self.axial_load,
+            dimple_radius=self.dimple_radius,
+        )
 
     def gear_teeth(self, name: str) -> dict[str, int]:
         """Teeth of its gears by the names that meshes use, of a shaft of this name."""

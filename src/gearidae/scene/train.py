@@ -25,7 +25,7 @@ from gearidae.scene.gears import LAW_KEYS, Mesh, disc_inertia
 from gearidae.scene.group import did_you_mean
 from gearidae.scene.named_tables import NamedTables
 from gearidae.scene.phases import with_phases
-from gearidae.scene.shafts import Meshing, Shaft
+from gearidae.scene.shafts import HUB_KEYS, Meshing, Shaft
 from gearidae.scene.surface import Surface
 
 if TYPE_CHECKING:
@@ -175,7 +175,7 @@ def pair_shafts(gears: Gears) -> NamedTables[Shaft]:
             inertia=getattr(gears, f"{name}_inertia"),
             teeth=getattr(gears, f"{name}_teeth"),
             hub_friction=gears.hub_friction if _has_joint(gears, name) else 0.0,
-            **{key: getattr(gears, f"{name}_{key}") for key in _HUB_KEYS},
+            **{key: getattr(gears, f"{name}_{key}") for key in HUB_KEYS},
         )
         for name in ("pinion", "gear")
     }
@@ -193,7 +193,6 @@ def pair_meshes(gears: Gears, mesh: Mesh) -> NamedTables[Meshing]:
     return NamedTables({"mesh": Meshing(driver="pinion", driven="gear", **own)})
 
 
-_HUB_KEYS: Final = ("hub_radius", "hub_adhesion", "axial_load", "dimple_radius")
 _OF_PAIRS: Final = ("hub_friction_rise", *LAW_KEYS)
 """Keys of a pair that act on its shafts, and that a train does not have."""
 

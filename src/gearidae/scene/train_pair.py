@@ -8,15 +8,14 @@ from typing import TYPE_CHECKING, Any, Final
 from gearidae.errors import SceneError
 from gearidae.scene.friction import has_flank_friction
 from gearidae.scene.gears import Gears
+from gearidae.scene.shafts import HUB_KEYS
 from gearidae.scene.torque import Drive, Load
 
 if TYPE_CHECKING:
     from gearidae.scene.scene import GearScene, TrainScene
-    from gearidae.scene.shafts import Shaft
     from gearidae.scene.train import TrainMesh
 
 _SIZES: Final = dict.fromkeys(("module", "driver_base_radius", "pressure_angle", "face_width"))
-_HUB_KEYS: Final = ("hub_radius", "hub_adhesion", "axial_load", "dimple_radius")
 
 
 @lru_cache(maxsize=64)
@@ -71,18 +70,14 @@ def _hubs(scene: TrainScene, mesh: TrainMesh) -> dict[str, Any]:
     coefficients = {}
     for side, number in (("pinion", mesh.a), ("gear", mesh.b)):
         shaft = scene.shafts[names[number]]
-        keys |= {f"{side}_{key}": getattr(shaft, key) for key in _HUB_KEYS}
-        if _has_joint(shaft):
+        keys |= {f"{side}_{key}": getattr(shaft, key) for key in HUB_KEYS}
+        if shaft.hub is not None:
             coefficients[names[number]] = shaft.hub_friction
     if len(set(coefficients.values())) > 1:
         name = names[mesh.b]
         reason = f"must be that of the other shaft, {coefficients[names[mesh.a]]:g}, in a train of one mesh"
         raise SceneError(f"shafts.{name}.hub_friction", coefficients[name], reason)
     return keys | {"hub_friction": next(iter(coefficients.values()), 0.0)}
-
-
-def _has_joint(shaft: Shaft) -> bool:
-    return shaft.hub_radius > 0.0 or shaft.dimple_radius > 0.0
 
 
 def _torques(scene: TrainScene, mesh: TrainMesh) -> tuple[Drive, Load]:
