@@ -16,13 +16,12 @@ from gearidae.engine import adams
 from gearidae.engine.events.events import guard
 from gearidae.engine.events.record import EVENT_NUMBERS
 from gearidae.engine.events.stops import next_stop
-from gearidae.engine.integrate.accepted_step import finish_step, has_room, prepare_restart
 from gearidae.engine.integrate.driver import BLOCK_EVENTS, BLOCK_PASSAGES, Output
-from gearidae.engine.integrate.native import restart, state_for_sample
-from gearidae.engine.integrate.root_finding import Stepper, state_at
+from gearidae.engine.integrate.roots import Stepper, state_at, state_for_sample
 from gearidae.engine.model.addresses import POINTERS, model_at
 from gearidae.engine.motion.observe import observe
 from gearidae.engine.observers.passages import PASSAGE_NUMBERS
+from gearidae.engine.step import finish_step, has_room, prepare_restart, restart
 from gearidae.engine.sundials.ida_memory import HANDLES
 from gearidae.engine.sundials.memory import words
 from gearidae_bench.compiling import compiled_callback
@@ -55,7 +54,7 @@ def _finish(place, numbers, flag, events):  # type: ignore[no-untyped-def]
     if not has_room(driver.events, driver.passages, out):  # nobody reads them
         driver.events = driver.passages = 0
     between = (a[2 * n : 3 * n], a[3 * n : 4 * n])
-    afresh = finish_step(m, a[:n], a[n : 2 * n], between, flag, out)
+    afresh = finish_step(m, driver.time, a[:n], a[n : 2 * n], between, flag, out)
     if driver.error != 0:
         return _BROKEN
     if driver.done != 0:
@@ -80,7 +79,7 @@ def _restart(place, numbers, again):  # type: ignore[no-untyped-def]
     a = carray(numbers, (VECTORS * n + 1,))
     y, yp, dky, spare = a[:n], a[n : 2 * n], a[2 * n : 3 * n], a[3 * n : 4 * n]
     if again != 0:
-        prepare_restart(m, y, yp)
+        prepare_restart(m, a[4 * n], y, yp)
     else:
         m.work.adams.wanted = m.work.adams.native_newton
     return restart(Stepper(handles, m, y, yp, dky, spare, a[4 * n :]), next_stop(m))

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.engine.integrate.driver import CONVERGENCE_FAILURES_HIGH
-from gearidae.engine.integrate.root_finding import SHARPNESS
+from gearidae.engine.integrate.roots import SHARPNESS
 from gearidae.engine.model.addresses import POINTERS, note_addresses
 from gearidae.engine.motion.observe import observe
 from gearidae.engine.setup.problem import Problem

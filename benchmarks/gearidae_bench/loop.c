@@ -2,7 +2,7 @@
  *
  * It works on the solver that gearidae's own open_solver has set up, calls the same SUNDIALS library, and reaches the
  * same guard, history, interpolation and output functions through their addresses. Keep it in step with
- * gearidae.engine.integrate.native.advance and gearidae.engine.integrate.root_finding.
+ * gearidae.engine.step.advance and gearidae.engine.integrate.roots.
  */
 #include <math.h>
 #include <stdint.h>
@@ -14,7 +14,7 @@ extern int IDAGetNumSteps(void *, long *);
 
 enum { ONE_STEP = 2, TSTOP_RETURN = 1, ROOT_RETURN = 2 };
 enum { GO_ON, AFRESH, DONE, BROKEN }; /* what `finish` answers */
-enum { TRIES = 3 }; /* that of gearidae.engine.integrate.root_finding */
+enum { TRIES = 3 }; /* that of gearidae.engine.integrate.roots */
 
 /* Order of gearidae_bench.c_calls.addresses. What lies at `words` and `numbers` only these functions know. */
 typedef struct {

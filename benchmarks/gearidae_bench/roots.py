@@ -11,10 +11,10 @@ from gearidae.engine.events.events import guard
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.sliding import follow_sliding
 from gearidae.engine.events.stops import next_stop, pass_knot
-from gearidae.engine.integrate.accepted_step import handle
 from gearidae.engine.integrate.driver import Output
 from gearidae.engine.model.state import GEARS, Model, W
 from gearidae.engine.observers import adhesion_loss
+from gearidae.engine.step import switch
 from gearidae_bench.compiling import compiled
 from gearidae_bench.kinks import watch
 from gearidae_bench.steps import dop853_value, gauss_step, hermite_value, rates
@@ -140,14 +140,12 @@ def handle_event(m: Model, t: float, y: Floats, room: Floats) -> int:
     """Have the engine deal with the event at t, which `accept` has reached; `CONTINUE`, `RESTART` or `CHATTER`.
 
     The engine asks its own drivers to begin anew at a mesh mark where their steps are longer than the tip relief
-    takes to part a pair. The other methods rely on their error test alone: no step is noted for them.
+    takes to part a pair. The other methods rely on their error test alone: their step is said to have no length.
     """
-    driver = m.work.driver
-    driver.step, driver.step_end, driver.events = 0.0, t, 0
-    jumped = handle(m, t, y, y, Output(room, room, room))
-    if driver.error != 0:
+    switched = switch(m, t, y, y, (0.0, 0.0), Output(room, room, room), (0, 0))
+    if switched.error != 0:
         return CHATTER
-    return RESTART if jumped else CONTINUE
+    return RESTART if switched.restart else CONTINUE
 
 
 @compiled()

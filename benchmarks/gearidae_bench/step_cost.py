@@ -51,22 +51,22 @@ class Part(NamedTuple):
 
 _STEP, _NEWTON, _EVENTS = "IDA: attempts, tests, vectors, calls", "Newton's iteration", "epilogue of a step"
 PARTS: Final = (
-    Part(_STEP, "integrate.root_finding", "_step", ""),
+    Part(_STEP, "step", "propose", ""),
     Part(_NEWTON, "integrate.callbacks", "iterate", _STEP),
-    Part("formula: prediction", "integrate.newton.adams", "rates_at_end", _NEWTON),
+    Part("formula: prediction", "step.adams", "rates_at_end", _NEWTON),
     Part("residual and slopes", "integrate.correction", "motion", _NEWTON),
-    Part("formula: error, order, next step", "integrate.newton", "control_step", _NEWTON),
-    Part("formula: differences kept", "integrate.root_finding.adams", "keep", _STEP),
-    Part("guard function", "integrate.root_finding", "_look", ""),
-    Part("states at roots", "integrate.root_finding", "state_at", ""),
-    Part("samples", "integrate.native", "_sample", ""),
-    Part(_EVENTS, "integrate.native", "finish_step", ""),
-    Part("histories", "integrate.accepted_step", "accept", _EVENTS),
-    Part("events", "integrate.accepted_step", "handle", _EVENTS),
-    Part("energy balance: adhesion", "observers.dispatch.adhesion_loss", "step", _EVENTS),
-    Part("energy balance: works and losses", "observers.dispatch.balance", "step", _EVENTS),
-    Part("extremes", "observers.dispatch.extremes", "step", _EVENTS),
-    Part("choice of formulas", "integrate.accepted_step", "change_wanted", _EVENTS),
+    Part("formula: error, order, next step", "step", "control_step", _NEWTON),
+    Part("formula: differences kept", "step.adams", "keep", _STEP),
+    Part("guard function", "step", "evaluate_guard", ""),
+    Part("states at roots", "integrate.roots", "state_at", ""),
+    Part("samples", "step", "sample", ""),
+    Part(_EVENTS, "step", "finish_step", ""),
+    Part("histories", "step", "accept", _EVENTS),
+    Part("events", "step", "switch", _EVENTS),
+    Part("energy balance: adhesion", "step.adhesion_loss", "step", _EVENTS),
+    Part("energy balance: works and losses", "step.balance", "step", _EVENTS),
+    Part("extremes", "step.extremes", "step", _EVENTS),
+    Part("choice of formulas", "step", "change_wanted", _EVENTS),
 )
 """A part comes after the one that it is part of."""
 

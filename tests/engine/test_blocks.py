@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import gearidae as gd
-from gearidae.engine import drivers, solve
+from gearidae.engine import drivers, solve, step
 from gearidae.engine.backend import run_blocks
 from gearidae.engine.events.record import EVENTS_AT_ONCE
-from gearidae.engine.integrate import accepted_step, driver, native, portable, start
+from gearidae.engine.integrate import driver, native, portable, start
 from gearidae.engine.model.state import PHASE
 from gearidae.engine.setup.build import make_problem
 from gearidae.records import Statistics
@@ -144,10 +144,12 @@ def test_phase_is_taken_back_without_a_trace(monkeypatch):
     plain = solve(FAST, rtol=1e-7, t_end=1.6e-4, samples=401, backend="sksundae")
     finish = portable.finish_step_at
     monkeypatch.setattr(
-        portable, "finish_step_at", lambda place, y, *rest: finish(place, y, *rest) or abs(y[PHASE]) > 5.0
+        portable,
+        "finish_step_at",
+        lambda place, t, y, *rest: finish(place, t, y, *rest) or abs(y[PHASE]) > 5.0,
     )
-    monkeypatch.setattr(portable, "prepare_restart", accepted_step.prepare_restart.py_func)
-    monkeypatch.setattr(accepted_step, "rebase", _rebase_now)
+    monkeypatch.setattr(portable, "prepare_restart", step.prepare_restart.py_func)
+    monkeypatch.setattr(step, "rebase", _rebase_now)
     shifted = solve(FAST, rtol=1e-7, t_end=1.6e-4, samples=401, backend="sksundae")
     assert shifted.statistics.restarts > 0
     # each restart changes the steps, and with them the error: some hundred times the tolerance of 1e-7 per step

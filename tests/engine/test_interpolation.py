@@ -10,6 +10,7 @@ from gearidae.engine.integrate import native
 from gearidae.engine.integrate.callbacks import callbacks
 from gearidae.engine.integrate.driver import CONVERGENCE_FAILURES_HIGH
 from gearidae.engine.setup.build import make_problem
+from gearidae.engine.step import advance
 from gearidae.engine.sundials import interpolation
 from gearidae.engine.sundials import names as sun
 from gearidae.engine.sundials.ida_memory import IDA, YP, Places, Y, close_solver, open_solver
@@ -29,9 +30,9 @@ def stepped():
     try:
         vectors = (s.y, s.yp, s.dky)
         assert open_solver(s.handles, place, functions, places, vectors, CONVERGENCE_FAILURES_HIGH) == 0
-        native.advance(place, s, out, STEPS)
+        advance(place, s, out, STEPS)
         begin = float(s.clock[0])
-        native.advance(place, s, out, 1)
+        advance(place, s, out, 1)
         yield s, begin
     finally:
         close_solver(s.handles)

@@ -7,11 +7,11 @@ import gearidae as gd
 from gearidae.engine.backend import run_blocks
 from gearidae.engine.events.record import EVENT_NUMBERS, EVENTS_AT_ONCE, record
 from gearidae.engine.integrate import driver
-from gearidae.engine.integrate.accepted_step import has_room
 from gearidae.engine.integrate.driver import BLOCK_EVENTS, BLOCK_PASSAGES, Ending, Output
 from gearidae.engine.model.state import MATERIALS, SLOTS_HIGH
 from gearidae.engine.observers.passages import PASSAGES_AT_ONCE
 from gearidae.engine.setup.build import make_problem
+from gearidae.engine.step import has_room
 from gearidae.records import EventKind, Statistics
 
 FLIGHT = gd.preset("teodorescu2009").replace(

@@ -8,10 +8,9 @@ import pytest
 import gearidae as gd
 from balances import assert_closes
 from gearidae.archive.totals import imbalance_of
-from gearidae.engine import solve
+from gearidae.engine import solve, step
 from gearidae.engine.backend import run_blocks
 from gearidae.engine.model.state import V, W
-from gearidae.engine.observers import dispatch
 from gearidae.engine.setup.build import make_problem
 from gearidae.records import Statistics
 
@@ -51,7 +50,7 @@ class Recorder:
 def calls(monkeypatch):
     names = []
     for name in ("adhesion_loss", "extremes", "friction_losses", "balance", "exposures"):
-        monkeypatch.setattr(dispatch, name, Recorder(name, names))
+        monkeypatch.setattr(step, name, Recorder(name, names))
     return names
 
 
@@ -60,11 +59,10 @@ def follow(balance, exposures):
     wanted = SimpleNamespace(balance=balance, friction=balance, extremes=1, exposures=exposures)
     m = SimpleNamespace(scene=SimpleNamespace(follow=wanted, kind=0))
     y, turned = np.zeros(max(V, W) + 1), SimpleNamespace(turns=True, coast=0, pair=0, k=0, gap=0.0)
-    dispatch.begin.py_func(m, 0.0, y, y)
-    dispatch.step.py_func(m, 1.0, y, y, (True, True), (y, y))
-    dispatch.event.py_func(m, 1.0, y, y, turned)
-    dispatch.resume.py_func(m, 1.0, y, True, True)
-    dispatch.finish.py_func(m, 1.0, y, y)
+    step.account.py_func(m, 1.0, y, y, (True, True), (y, y))
+    step.account_event.py_func(m, 1.0, y, y, turned)
+    step.resume_account.py_func(m, 1.0, y, True, True)
+    step.finish_account.py_func(m, 1.0, y, y)
 
 
 def test_all_are_called_in_order(calls):

@@ -53,11 +53,8 @@ def test_the_step_allowed_opens_a_gap_by_its_share_of_the_roughness():
     before, _, _, _ = pair_gap(m, 0, 0, y[0], 0.0, y[PHASE], y[W])
     after, _, _, _ = pair_gap(m, 0, 0, y[0], 0.0, y[PHASE] + m.scene.phase_rate * y[W] * step, y[W])
     np.testing.assert_allclose(after - before, RELIEF_PER_STEP, rtol=1e-9)
-    driver = m.work.driver
-    driver.step_end, driver.step = 10.0, 0.5 * step
-    assert not outruns_relief(m, 10.0 + 0.9 * step, y)
-    assert outruns_relief(m, 10.0 + 1.1 * step, y)  # the present step is already longer
-    driver.step = 1.1 * step
-    assert outruns_relief(m, 10.0, y)  # and here the one before
+    assert not outruns_relief(m, y, (0.5 * step, 0.9 * step))
+    assert outruns_relief(m, y, (0.5 * step, 1.1 * step))  # the present step is already longer
+    assert outruns_relief(m, y, (1.1 * step, 0.0))  # and here the one before
     y[W] = 0.0
-    assert not outruns_relief(m, 1e9, y)  # nothing opens
+    assert not outruns_relief(m, y, (1e9, 1e9))  # nothing opens

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gearidae.engine.integrate import native
-from gearidae.engine.integrate.root_finding import _inverse
+from gearidae.engine.integrate.roots import _inverse
 from gearidae.engine.setup.build import make_problem
 from gearidae.records import Statistics
 from gearidae_bench.scenes import SCENES

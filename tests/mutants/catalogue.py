@@ -260,7 +260,7 @@ MUTANTS = (
     Mutant(
         "a step that may be longer than a pair takes to part",
         "engine/events/events.py",
-        " or outruns_relief(m, t, y)",
+        " or outruns_relief(m, y, steps)",
         "",
         ("engine/test_parting_between_steps.py",),
     ),
@@ -336,7 +336,7 @@ MUTANTS = (
     ),
     Mutant(
         "a root accepted at a distance a hundred times too large",
-        "engine/integrate/root_finding.py",
+        "engine/integrate/roots.py",
         "(b - a) * high < tolerance * (high - low)",
         "(b - a) * high < 100.0 * tolerance * (high - low)",
         ("engine/test_search.py",),
@@ -434,9 +434,9 @@ MUTANTS = (
     ),
     Mutant(
         "what a contact has joined lost at the end of a run",
-        "engine/integrate/accepted_step.py",
-        "    if driver.done != 0 or driver.error != 0:\n",
-        "    if driver.error != 0:\n",
+        "engine/step.py",
+        "    if done or error != 0:\n",
+        "    if error != 0:\n",
         ("engine/test_exposures.py::test_nothing_is_lost_where_a_run_ends",),
     ),
     Mutant(

@@ -73,7 +73,9 @@ def guard(m: Model, t: float, y: Floats) -> float:
 
 
 @compiled
-def handle_mesh(m: Model, t: float, y: Floats, events: Floats, count: int) -> tuple[int, bool, bool]:
+def handle_mesh(
+    m: Model, t: float, y: Floats, steps: tuple[float, float], events: Floats, count: int
+) -> tuple[int, bool, bool]:
     """Deal with the guards of mesh and gear that have fallen at t, before those of the pairs.
 
     Parameters
@@ -83,7 +85,9 @@ def handle_mesh(m: Model, t: float, y: Floats, events: Floats, count: int) -> tu
     t : float
         Time over tau; `accept` has been there.
     y : ndarray, shape (n,)
-        State there; set to rest where dry resistance takes hold.
+        State there.
+    steps : tuple of float
+        Lengths of the last whole step and of the present one so far, over tau.
     events : ndarray, shape (n, EVENT_NUMBERS)
         See `gearidae.engine.events.record`.
     count : int
@@ -103,7 +107,7 @@ def handle_mesh(m: Model, t: float, y: Floats, events: Floats, count: int) -> tu
         if m.scene.nodes > 0 and _light(m):
             m.state.rigid_again = 1
         # the force of a pair there jumps, or it would part unseen
-        restart = not in_flight(m) and (m.scene.curvature_force != 0 or outruns_relief(m, t, y))
+        restart = not in_flight(m) and (m.scene.curvature_force != 0 or outruns_relief(m, y, steps))
     return count, crossed, restart
 
 

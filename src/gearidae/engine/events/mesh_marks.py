@@ -102,11 +102,11 @@ def relief_step(m: Model, y: Floats) -> float:
 
 
 @compiled
-def outruns_relief(m: Model, t: float, y: Floats) -> bool:
+def outruns_relief(m: Model, y: Floats, steps: tuple[float, float]) -> bool:
     """Whether a pair may part between both ends of the present step, which the error test sees nothing of.
 
     A motion may be so smooth that the solver's steps are longer than the tip relief takes to part a pair. The present
-    step is at least as long as it has been up to t, and about as long as the one before.
+    step is at least as long as it has been so far, and about as long as the one before: `steps` are the one before and
+    the present one so far.
     """
-    driver = m.work.driver
-    return bool(max(driver.step, t - driver.step_end) > relief_step(m, y))
+    return bool(max(steps[0], steps[1]) > relief_step(m, y))

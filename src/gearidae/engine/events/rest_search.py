@@ -28,6 +28,7 @@ from gearidae.engine.events.law_switches import law_guard
 from gearidae.engine.events.sliding import sliding_guard
 from gearidae.engine.model.state import DRIVE, LOAD, PHASE, Floats, Model, U
 from gearidae.engine.pairs.shaft_angle import torque_angle
+from gearidae.formulas.roots import bisected
 from gearidae.laws.shaft.schedule import straight_until
 from gearidae.laws.shafts import driving_force, driving_range
 
@@ -50,6 +51,14 @@ def _margin(m: Model, t: float, y: Floats) -> float:
     m.state.progress.guard_evaluations += 1
     held = sliding_guard(m, t, y)
     return min(held, law_guard(m, t, y)) if m.scene.law_switches != 0 else held
+
+
+@compiled
+def _holds(t: float, m: Model, y: Floats) -> bool:
+    return bool(_margin(m, t, y) >= 0.0)
+
+
+_end_of_hold = bisected(_holds)
 
 
 @compiled_once(SOLVER)
@@ -137,13 +146,13 @@ def _first_fall(m: Model, y: Floats, begin: float, end: float) -> float:
         t = end if i == parts else begin + i * h
         after = _margin(m, t, y) if t <= m.scene.end else math.inf
         if after < 0.0 and i <= parts:
-            return _root(m, y, then, t)
+            return float(_end_of_hold(then, t, HALVINGS, _EPS, m, y)[1])
         # a margin that stays as it is has no minimum
         if before >= now <= after and now < drop and not before == now == after:
             left = max(then - h, begin)
             lowest = _lowest(m, y, left, min(t, end))
             if _margin(m, lowest, y) < 0.0:
-                return _root(m, y, left, lowest)
+                return float(_end_of_hold(left, lowest, HALVINGS, _EPS, m, y)[1])
         before, now, then = now, after, t
     return math.inf
 
@@ -165,17 +174,3 @@ def _lowest(m: Model, y: Floats, a: float, b: float) -> float:
             d = b - _GOLDEN * (b - a)
             at_d = _margin(m, d, y)
     return c if at_c < at_d else d
-
-
-@compiled
-def _root(m: Model, y: Floats, above: float, below: float) -> float:
-    """Time just behind the fall of the margin through zero, between one at which it is above and one below."""
-    for _ in range(HALVINGS):
-        middle = 0.5 * (above + below)
-        if below - above <= _EPS * abs(below):
-            break
-        if _margin(m, middle, y) < 0.0:
-            below = middle
-        else:
-            above = middle
-    return below

@@ -9,10 +9,10 @@ import numpy as np
 from numba import carray, types  # type: ignore[attr-defined]
 
 from gearidae.compiled import compiled, compiled_callback
-from gearidae.engine.integrate.newton import Attempt, iterate
 from gearidae.engine.model.addresses import model_at
 from gearidae.engine.motion.block_jacobian import assemble, factorise, solve_blocks, unknowns
 from gearidae.engine.motion.residual import jacobian, residual
+from gearidae.engine.step import Attempt, iterate
 from gearidae.engine.sundials import memory as ptr
 from gearidae.engine.sundials import names as sun
 from gearidae.engine.sundials.ida_memory import Functions

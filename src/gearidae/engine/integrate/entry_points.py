@@ -9,13 +9,13 @@ from __future__ import annotations
 from gearidae.compiled import compiled
 from gearidae.engine.events.asperity_events import first_grazing_minimum, note_step_start
 from gearidae.engine.events.events import guard
-from gearidae.engine.integrate.accepted_step import finish_step
 from gearidae.engine.integrate.driver import Output
 from gearidae.engine.integrate.resting import rest_step
 from gearidae.engine.model.addresses import model_at
 from gearidae.engine.model.state import Floats
 from gearidae.engine.motion.observe import observe
 from gearidae.engine.motion.residual import jacobian, residual
+from gearidae.engine.step import finish_step
 
 
 @compiled
@@ -60,10 +60,16 @@ def observe_at(place: int, t: float, y: Floats, row: Floats) -> None:
 
 @compiled
 def finish_step_at(
-    place: int, y: Floats, yp: Floats, between: tuple[Floats, Floats], flag: int, out: Output
+    place: int,
+    t: float,
+    y: Floats,
+    yp: Floats,
+    between: tuple[Floats, Floats],
+    flag: int,
+    out: Output,
 ) -> bool:
-    """`gearidae.engine.integrate.accepted_step.finish_step`."""
-    return finish_step(model_at(place), y, yp, between, flag, out)
+    """`gearidae.engine.step.finish_step`."""
+    return finish_step(model_at(place), t, y, yp, between, flag, out)
 
 
 @compiled

@@ -2,7 +2,7 @@
 
 Slower by the cost of its Python callbacks, and free of any assumption about how SUNDIALS was built. The formulas are
 IDA's own, so that a run is less accurate at the same tolerance (`gearidae.engine.adams`); histories and
-events are dealt with as in the native driver (`gearidae.engine.integrate.accepted_step`). Between steps it interpolates
+events are dealt with as in the native driver (`gearidae.engine.step`). Between steps it interpolates
 for itself, because the API has no dense output.
 """
 
@@ -19,7 +19,6 @@ from sksundae.ida import IDA
 from gearidae.compiled import compiled
 from gearidae.engine.events.events import ROOT, STOP
 from gearidae.engine.events.stops import next_stop
-from gearidae.engine.integrate.accepted_step import has_room, prepare_restart, prepare_start
 from gearidae.engine.integrate.driver import (
     BLOCK_SECONDS,
     CHECKPOINT_STEPS,
@@ -50,6 +49,7 @@ from gearidae.engine.model.state import Floats, Model, Record
 from gearidae.engine.motion.block_jacobian import dense_jacobian, store_size
 from gearidae.engine.motion.static_solve import fold_gap
 from gearidae.engine.setup.problem import Problem
+from gearidae.engine.step import has_room, prepare_restart, prepare_start
 from gearidae.errors import SceneError
 from gearidae.records import Statistics
 
@@ -98,12 +98,12 @@ def run(
         yield from _samples(problem, solver, out, y, reader)
         if not has_room(driver.events, driver.passages, out):
             yield out.block(m, driver.time)
-        afresh = finish_step_at(solver.addresses.place, y, yp, between, flag, out)
+        afresh = finish_step_at(solver.addresses.place, float(driver.time), y, yp, between, flag, out)
         if driver.error in MODEL_CHANGES:
             progress.restarts += 1
         checkpoint = driver.since >= CHECKPOINT_STEPS
         if (afresh or checkpoint) and driver.done == 0 and driver.error == 0:
-            prepare_restart(m, y, yp)
+            prepare_restart(m, float(driver.time), y, yp)
             solver.count()
             if checkpoint:
                 driver.since = 0

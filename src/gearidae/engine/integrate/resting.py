@@ -32,7 +32,7 @@ def comes_to_rest(m: Model, t: float, y: Floats) -> bool:
     """Whether gears that have moved up to an accepted time are at rest from there on."""
     if m.state.hold == FREE or y[W] != 0.0:
         return False
-    if abs(y[V]) * m.rows[m.scene.error_weights_at + V] >= 1.0 or m.work.driver.resting != 0:
+    if abs(y[V]) * m.rows[m.scene.error_weights_at + V] >= 1.0:
         return False
     return is_at_rest(m, t, y)
 
@@ -91,11 +91,12 @@ def _step_to_equilibrium(m: Model, t: float, y: Floats, v: float) -> float:
 
 
 @compiled
-def begin_rest(m: Model, t: float, y: Floats) -> None:
-    """Note at a start whether gears are at rest, and stop what is left of their motion."""
-    m.work.driver.resting = int(is_at_rest(m, t, y))
-    if m.work.driver.resting != 0 and m.state.hold != AT_REST:
+def begin_rest(m: Model, t: float, y: Floats) -> bool:
+    """Whether gears are at rest at a start, where what is left of their motion is stopped."""
+    resting = is_at_rest(m, t, y)
+    if resting and m.state.hold != AT_REST:
         _settle(m, t, y)
+    return resting
 
 
 @compiled_once(SOLVER)

@@ -235,7 +235,6 @@ FRICTION_WORK: Final = record_type(  # friction
     ("before_pair", INT, (2 * SLOTS_HIGH,)),  # pair of each history then
     ("before_slide", INT, (2 * SLOTS_HIGH,)),  # and its direction
     ("time", REAL),  # of the powers [tau]
-    ("force", REAL),  # along the line of action then [F]
     (
         "power",
         REAL,

@@ -108,7 +108,7 @@ def begin(m: Model, t: float, y: Floats, yp: Floats) -> None:
 @compiled(inline=True)
 def step(
     m: Model, t: float, y: Floats, yp: Floats, at: tuple[bool, bool], between: tuple[Floats, Floats]
-) -> None:
+) -> bool:
     """Add works and losses up to an accepted time; histories and mesh marks must still be those before it.
 
     A turning point needs no sample. In free flight, where only torques and drag are integrated, formulas of high
@@ -124,9 +124,14 @@ def step(
         Whether a stop or a root of the guard is there, and whether it is a root.
     between : tuple of two ndarrays, shape (n,)
         Work space.
+
+    Returns
+    -------
+    bool
+        Whether an interval of the quadrature ends there.
     """
     if at[1] and _can_wait(m, t, y):
-        return
+        return False
     a, parts, start = m.work.adams, 1, m.work.resistance.time
     if a.order_used > ORDER and in_flight(m):
         parts = m.scene.flight_parts
@@ -136,6 +141,7 @@ def step(
         adams.between(a, time, between[0], between[1])
         _accumulate(m, time, between[0], between[1], True)
     _accumulate(m, t, y, yp, at[0] or m.state.bound_exceeded != 0)
+    return bool(m.work.quadrature.time == t)
 
 
 @compiled

@@ -44,8 +44,11 @@ _OUTER: Final = 0.5 * math.sqrt(0.6)
 
 
 @compiled_once(FRICTION)
-def note_friction(m: Model, t: float, y: Floats) -> None:
-    """Note the powers of friction and their rates, with the present directions of slip."""
+def note_friction(m: Model, t: float, y: Floats) -> float:
+    """Note the powers of friction and their rates, with the present directions of slip; the force that it has found.
+
+    The force is that along the line of action, mesh damping included.
+    """
     rolls = m.scene.friction.joints != 0 and m.state.hold == HELD_PAIR
     ahead = _loads_ahead(m, t, y) if rolls else Loads(0.0, 0.0)
     turn, pinion, gear = forces_at_shafts(m, t, y)
@@ -54,7 +57,7 @@ def note_friction(m: Model, t: float, y: Floats) -> None:
         set_limits(m, t, y[W])
     shafts = solve_shafts(m, t, y, turn, pinion, gear)
     r = m.work.friction
-    r.time, r.force = t, mesh_force(m, y[V], shafts.mesh.drive - shafts.mesh.coast)
+    r.time, force = t, mesh_force(m, y[V], shafts.mesh.drive - shafts.mesh.coast)
     for which in range(_POWERS):
         r.power[which] = r.power_rate[which] = 0.0
     drive = coast = drive_friction = coast_friction = 0.0  # rates
@@ -87,6 +90,7 @@ def note_friction(m: Model, t: float, y: Floats) -> None:
             load_rate = _load_rate(m, shafts, Mesh(drive, coast, drive_friction, coast_friction), force_rate)
         joints = joint_friction(m, t, y), joint_friction_rate(m, t, y)
         _note_joints(m, shafts, joints, load_rate, force_rate, turn, y[W])
+    return float(force)
 
 
 @compiled
@@ -170,7 +174,7 @@ def _load_rate(m: Model, shafts: Shafts, rate: Mesh, force_rate: tuple[float, fl
 
 
 @compiled_once(FRICTION)
-def accumulate_friction(m: Model, t: float, y: Floats, root: bool, between: Floats, rates: Floats) -> None:
+def accumulate_friction(m: Model, t: float, y: Floats, root: bool, between: Floats, rates: Floats) -> float:
     """Add the losses since the last call, and note the powers here.
 
     The corrected trapezoidal rule is extrapolated with the powers in the middle, where the formula of the step gives
@@ -187,17 +191,21 @@ def accumulate_friction(m: Model, t: float, y: Floats, root: bool, between: Floa
         Whether something happens there.
     between, rates : ndarray, shape (n,)
         Work space.
+
+    Returns
+    -------
+    float
+        Force there along the line of action; NaN where no time has passed.
     """
     r, a = m.work.friction, m.work.adams
     h, start = t - r.time, r.time
     if h == 0.0:
-        return
+        return math.nan
     first, first_rate = _copied(m.work.friction.power), _copied(m.work.friction.power_rate)
     bends = root and (m.scene.population.flanks != 0 or has_hubs(m))
     if bends and a.order_used > 0:
         _accumulate_inside(m, start, h, between, rates)
-        note_friction(m, t, y)
-        return
+        return note_friction(m, t, y)
     middle, halved = first, a.order_used > 0
     # weights of the rule, of powers and rates at both ends
     begin, end, first_bend, last_bend = 0.5 * h, 0.5 * h, h * h / 12.0, -h * h / 12.0
@@ -210,7 +218,7 @@ def accumulate_friction(m: Model, t: float, y: Floats, root: bool, between: Floa
         _note_within(m, start + 0.5 * h, between, rates)
         add_friction_work(m, 16.0 / 30.0 * h, 0.0)
         middle = _copied(m.work.friction.power)
-    note_friction(m, t, y)
+    force = note_friction(m, t, y)
     add_friction_work(m, end, last_bend)
     if keeps_friction_work(m):
         divide_friction_work(m, between if halved else y)
@@ -223,6 +231,7 @@ def accumulate_friction(m: Model, t: float, y: Floats, root: bool, between: Floa
             rough, loss = loss, integral_with_middle(h, first[i], middle[i], last, first_rate[i], last_rate)
             error = min(error, abs(loss - rough) / 16.0)
         _accumulate(m, i, loss, error)
+    return force
 
 
 @compiled

@@ -22,11 +22,11 @@ from gearidae.engine.model.state import (
     blank_work,
     copied,
 )
-from gearidae.engine.observers.dispatch import look_at
 from gearidae.engine.observers.exposures.bins import exposures_of
 from gearidae.engine.observers.extremes.units import extremes_in_si
 from gearidae.engine.setup import checkpoint as checkpoints
 from gearidae.engine.setup.kept_asperities import restore_asperities
+from gearidae.engine.step import look_at
 from gearidae.errors import SceneError
 from gearidae.laws.shaft.harmonic import fastest_harmonic
 from gearidae.laws.shaft.schedule import fastest_schedule

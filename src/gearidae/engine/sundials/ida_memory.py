@@ -28,7 +28,7 @@ class Functions(NamedTuple):
     steps : ndarray, shape (2,) or (0,)
         Set-up and solution of a linear solver of ours; none where SUNDIALS has to solve, or nothing is left to.
     newton : ndarray, shape (3,) or (0,)
-        Functions of the package's own nonlinear solver, see `gearidae.engine.integrate.newton`; none where SUNDIALS
+        Functions of the package's own nonlinear solver, see `gearidae.engine.step.iterate`; none where SUNDIALS
         iterates.
     """
 

@@ -122,14 +122,15 @@ def _follow(m: Model, t: float, y: Floats, yp: Floats, whole: bool) -> None:
 
 
 @compiled(inline=True)
-def step(m: Model, t: float, y: Floats, yp: Floats, root: bool) -> None:
+def step(m: Model, t: float, y: Floats, yp: Floats, root: bool, closed: bool) -> None:
     """Count an accepted step, and follow the exposures where that is wanted after it.
 
-    Forces of elastic contacts have to be evaluated for it: that is done where the energy balance closes an interval.
+    Forces of elastic contacts have to be evaluated for it: that is done where the energy balance has `closed` an
+    interval.
     """
     exposing = m.work.exposing
     if m.scene.nodes > 0:
-        if m.work.quadrature.time == t:
+        if closed:
             _follow(m, t, y, yp, False)
     elif root and m.scene.population.flanks != 0:  # forces may jump here
         _follow(m, t, y, yp, True)

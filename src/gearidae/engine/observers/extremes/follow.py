@@ -21,7 +21,9 @@ from gearidae.engine.pairs.tooth_pairs import rigid_separation
 
 
 @compiled(inline=True)
-def step(m: Model, t: float, y: Floats, yp: Floats, event: bool, between: tuple[Floats, Floats]) -> None:
+def step(
+    m: Model, t: float, y: Floats, yp: Floats, event: bool, between: tuple[Floats, Floats], force: float
+) -> None:
     """Follow the extremes to an accepted time, before its events are handled.
 
     Parameters
@@ -34,11 +36,13 @@ def step(m: Model, t: float, y: Floats, yp: Floats, event: bool, between: tuple[
         Whether something happens there: the force may have a corner, over which no polynomial is laid.
     between : tuple of two ndarrays, shape (n,)
         Work space.
+    force : float
+        Along the line of action there, if friction has asked for it; else NaN.
     """
     k = m.work.track
     if t > k.time:
         here = k.last + 1 if k.last < 2 else 0
-        _set_point(m, here, t, y, yp)
+        _set_point(m, here, t, y, yp, force)
         last, now = k.point[k.last], k.point[here]
         if m.scene.follow.gear != 0:
             follow_speed(m, last, now, y)
@@ -55,9 +59,9 @@ def step(m: Model, t: float, y: Floats, yp: Floats, event: bool, between: tuple[
 
 
 @compiled(inline=True)
-def _set_point(m: Model, i: int, t: float, y: Floats, yp: Floats) -> None:
+def _set_point(m: Model, i: int, t: float, y: Floats, yp: Floats, force: float) -> None:
     p = m.work.track.point[i]
-    p.time, p.force = t, force_of_motion(m, t, y, yp)
+    p.time, p.force = t, force_of_motion(m, t, y, yp, force)
     p.travel, p.travel_rate, p.travel_bend = y[U], y[V], yp[V]
     p.speed, p.speed_rate, p.position = y[W], yp[W], y[PHASE] + m.state.turns
 
@@ -85,8 +89,8 @@ def resume(m: Model, t: float, y: Floats) -> None:
 
 
 @compiled
-def begin(m: Model, t: float, y: Floats, yp: Floats) -> None:
-    """Go on from a start, where forces and accelerations may have jumped."""
+def begin(m: Model, t: float, y: Floats, yp: Floats, force: float) -> None:
+    """Go on from a start, where forces and accelerations may have jumped; `force` as for `step`."""
     e, k = m.state.extremes, m.work.track
     if e.begun != 0:
         resume(m, t, y)  # what a knot or a creeping gear has changed, which no root has found
@@ -95,7 +99,7 @@ def begin(m: Model, t: float, y: Floats, yp: Floats) -> None:
         e.separation = separation(m, y)
         e.window_length = m.scene.end / WINDOWS
     k.time, k.last, k.smooth, k.next_part = t, 0, 1, next_part(m)
-    _set_point(m, 0, t, y, yp)
+    _set_point(m, 0, t, y, yp, force)
     if m.scene.follow.gear != 0:
         standing.begin(m, t, y)
     first_force(m, t, k.point[0].force)

@@ -32,27 +32,20 @@ _CLOSE: Final = 1e-3
 
 
 @compiled(inline=True)
-def force_of_motion(m: Model, t: float, y: Floats, yp: Floats) -> float:
+def force_of_motion(m: Model, t: float, y: Floats, yp: Floats, known: float) -> float:
     """Force along the line of action, mesh damping included, from the pinion's acceleration.
 
     See `gearidae.engine.motion.residual`, whose first equation is solved for the force. Friction acts on the pinion,
-    too: with it the contact law is asked.
+    too: with it the contact law is asked, unless the force is `known` and not NaN.
     """
     if in_flight(m):
         return mesh_force(m, y[V], 0.0)
     if m.scene.friction.rubs != 0:
-        return _force_with_friction(m, t, y)
+        return float(force_of_law(m, t, y)) if math.isnan(known) else known
     turn, e = speed_and_error(m, y)
     drive = pinion_force(m, t, torque_angle(m, DRIVE, y[U], y[PHASE]), turn)
     acceleration = pinion_acceleration(e, turn, y[W], yp[V], yp[W])
     return (drive - acceleration / m.scene.pinion_inverse_mass) / (1.0 - e.pinion)
-
-
-@compiled
-def _force_with_friction(m: Model, t: float, y: Floats) -> float:
-    """Force by the contact law, which the losses by friction have just asked at the same time."""
-    r = m.work.friction
-    return float(r.force) if m.scene.follow.friction != 0 and r.time == t else float(force_of_law(m, t, y))
 
 
 @compiled
@@ -126,7 +119,7 @@ def _look_between(
             force = _force_between(m, before, last, now, t, between[0])
         else:
             adams.between(m.work.adams, t, between[0], between[1])
-            force = force_of_motion(m, t, between[0], between[1])
+            force = force_of_motion(m, t, between[0], between[1], math.nan)
         _note_force(m, t, force)
         if t - t0 > t2 - t:
             t0, f0 = t, force

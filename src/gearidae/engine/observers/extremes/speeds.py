@@ -18,13 +18,12 @@ from gearidae.engine.model.checkpoint_record import WINDOWS
 from gearidae.engine.model.state import Floats, Model, Record, U, V
 from gearidae.engine.motion.pair_forces import forces_at
 from gearidae.engine.observers.standing.free_torques import slowest_period
-from gearidae.formulas.interpolation import cubic, cubic_slope
+from gearidae.formulas.interpolation import cubic
+from gearidae.formulas.roots import HALVINGS, extremum_of_cubic, zero_of_cubic
 from gearidae.records import RUN_PARTS
 
 HELD_WITHIN: Final = 0.5
 """Pitches that a gear must turn on by before it counts as free again."""
-
-_BISECTIONS: Final = 40
 
 
 @compiled
@@ -94,22 +93,10 @@ def _look_inside(m: Model, last: Record, now: Record, y: Floats, turned: bool) -
 @compiled
 def _falls_to_zero(h: float, w0: float, rate0: float, w1: float, rate1: float) -> float:
     """Share of a step after which a speed that is positive at its beginning falls to zero."""
-    low, high = 0.0, 1.0
+    high = 1.0
     if w1 > 0.0:  # it rises again within the step: look before its minimum
-        for _ in range(_BISECTIONS):
-            middle = 0.5 * (low + high)
-            if cubic_slope(middle, h, w0, rate0, w1, rate1) < 0.0:
-                low = middle
-            else:
-                high = middle
-        low = 0.0
-    for _ in range(_BISECTIONS):
-        middle = 0.5 * (low + high)
-        if cubic(middle, h, w0, rate0, w1, rate1) > 0.0:
-            low = middle
-        else:
-            high = middle
-    return high
+        high = extremum_of_cubic(0.0, 1.0, HALVINGS, 0.0, -1.0, h, w0, rate0, w1, rate1)[1]
+    return float(zero_of_cubic(0.0, high, HALVINGS, 0.0, 1.0, h, w0, rate0, w1, rate1)[1])
 
 
 @compiled_once(SOLVER)

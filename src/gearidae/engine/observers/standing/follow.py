@@ -33,7 +33,8 @@ from gearidae.engine.observers.standing.zeros import (
     standing_since,
     stood_until,
 )
-from gearidae.formulas.interpolation import cubic, cubic_slope
+from gearidae.formulas.interpolation import cubic
+from gearidae.formulas.roots import HALVINGS, departure_of_cubic, extremum_of_cubic, zero_of_cubic
 from gearidae.laws.shaft.schedule import straight_until
 from gearidae.records.standing import HALF_PITCH
 
@@ -42,7 +43,6 @@ NEAR: Final = 3.0
 LOOKS_AHEAD: Final = 4096
 """Times at most, besides knots of schedules, at which a run that is to stop looks at what is still to come."""
 _STICKS: Final = STOPS.index("sticks")
-_BISECTIONS: Final = 40
 
 
 @compiled
@@ -129,16 +129,11 @@ def _go_away(m: Model, last: Record, now: Record) -> None:
     """Note when the gear has gone away from its last zero, within a step that may contain both."""
     s, unit, rate = m.state.standing, m.scene.time_unit, m.scene.phase_rate
     h = now.time - last.time
-    low, high = min(max((s.place_time / unit - last.time) / h, 0.0), 1.0), 1.0
-    for _ in range(_BISECTIONS):
-        middle = 0.5 * (low + high)
-        position = cubic(middle, h, last.position, rate * last.speed, now.position, rate * now.speed)
-        if abs(position - s.place) > NEAR * rate:
-            high = middle
-        else:
-            low = middle
-    s.near, s.near_time = 0, (last.time + high * h) * unit
-    s.near_position = cubic(high, h, last.position, rate * last.speed, now.position, rate * now.speed)
+    begin = min(max((s.place_time / unit - last.time) / h, 0.0), 1.0)
+    way = last.position, rate * last.speed, now.position, rate * now.speed
+    share = departure_of_cubic(begin, 1.0, HALVINGS, 0.0, s.place, NEAR * rate, h, *way)[1]
+    s.near, s.near_time = 0, (last.time + share * h) * unit
+    s.near_position = cubic(share, h, *way)
 
 
 @compiled(inline=True)
@@ -178,14 +173,9 @@ def _look_for_zeros(m: Model, here: int, y: Floats, turned: bool) -> None:
     elif w0 * w1 < 0.0:
         _add_between(m, last, now, y, 0.0, 1.0)
     elif turned:
-        h, low, high = now.time - last.time, 0.0, 1.0
-        for _ in range(_BISECTIONS):
-            middle = 0.5 * (low + high)
-            if cubic_slope(middle, h, w0, last.speed_rate, w1, now.speed_rate) * w0 < 0.0:
-                low = middle
-            else:
-                high = middle
-        if cubic(low, h, w0, last.speed_rate, w1, now.speed_rate) * w0 < 0.0:
+        h, speeds = now.time - last.time, (w0, last.speed_rate, w1, now.speed_rate)
+        low = extremum_of_cubic(0.0, 1.0, HALVINGS, 0.0, -w0, h, *speeds)[0]
+        if cubic(low, h, *speeds) * w0 < 0.0:
             _add_between(m, last, now, y, 0.0, low)
             _add_between(m, last, now, y, low, 1.0)
     if m.scene.stop == _STICKS:
@@ -196,15 +186,10 @@ def _look_for_zeros(m: Model, here: int, y: Floats, turned: bool) -> None:
 def _add_between(m: Model, last: Record, now: Record, y: Floats, low: float, high: float) -> None:
     """Add the zero of the speed between two shares of a step, at which its signs differ."""
     h, rate = now.time - last.time, m.scene.phase_rate
-    sign = cubic(low, h, last.speed, last.speed_rate, now.speed, now.speed_rate)
-    for _ in range(_BISECTIONS):
-        middle = 0.5 * (low + high)
-        if cubic(middle, h, last.speed, last.speed_rate, now.speed, now.speed_rate) * sign > 0.0:
-            low = middle
-        else:
-            high = middle
-    position = cubic(high, h, last.position, rate * last.speed, now.position, rate * now.speed)
-    add_zero(m, last.time + high * h, position, y, False)
+    speeds = last.speed, last.speed_rate, now.speed, now.speed_rate
+    share = zero_of_cubic(low, high, HALVINGS, 0.0, cubic(low, h, *speeds), h, *speeds)[1]
+    position = cubic(share, h, last.position, rate * last.speed, now.position, rate * now.speed)
+    add_zero(m, last.time + share * h, position, y, False)
 
 
 @compiled_once(SOLVER)

@@ -25,6 +25,7 @@ from gearidae.engine.observers.standing.free_torques import (
     push_on_free,
 )
 from gearidae.formulas.interpolation import cubic
+from gearidae.formulas.roots import HALVINGS, bisected, departure_of_cubic, zero_of_cubic
 from gearidae.laws.shaft.schedule import straight_until
 from gearidae.records.standing import GROWS
 
@@ -34,7 +35,6 @@ SHORTEST: Final = 1e-8
 """Share of the time of all runs of a chain that a step has at least: with `SCENE.free_step` the bound on the work."""
 _TURN: Final = 0.25
 """Radians that the fastest torque of an angle may go through in a step."""
-_BISECTIONS: Final = 40
 _D: Final = 1.0 / (2.0 + math.sqrt(2.0))
 _E: Final = 6.0 + math.sqrt(2.0)
 
@@ -89,7 +89,8 @@ def _follow_piece(m: Model, i: int, t: float, stop: float, enough: float) -> flo
             after = min(max(t + share * h, t + least), stop)
             new_x, new_w = cubic(share, h, x, rate * w, new_x, rate * new_w), 0.0
         elif abs(new_x) > enough:
-            share = _share_until(h, x, rate * w, new_x, rate * new_w, enough)
+            way = x, rate * w, new_x, rate * new_w
+            share = departure_of_cubic(0.0, 1.0, HALVINGS, 0.0, 0.0, enough, h, *way)[1]
             after, new_x = t + share * h, math.copysign(enough, new_x)
         _accumulate_drive(m, i, t, after)
         t, x, w = after, new_x, new_w
@@ -165,27 +166,7 @@ def _comes_to_rest(
     """Share of a step after which the speed falls to zero."""
     rate0 = _acceleration(m, i, t, begin[0], begin[1], sign)
     rate1 = _acceleration(m, i, t + h, end[0], end[1], sign)
-    low, high = 0.0, 1.0
-    for _ in range(_BISECTIONS):
-        middle = 0.5 * (low + high)
-        if cubic(middle, h, begin[1], rate0, end[1], rate1) * sign > 0.0:
-            low = middle
-        else:
-            high = middle
-    return low
-
-
-@compiled
-def _share_until(h: float, x0: float, rate0: float, x1: float, rate1: float, enough: float) -> float:
-    """Share of a step after which free gears are so far away."""
-    low, high = 0.0, 1.0
-    for _ in range(_BISECTIONS):
-        middle = 0.5 * (low + high)
-        if abs(cubic(middle, h, x0, rate0, x1, rate1)) < enough:
-            low = middle
-        else:
-            high = middle
-    return high
+    return float(zero_of_cubic(0.0, 1.0, HALVINGS, 0.0, sign, h, begin[1], rate0, end[1], rate1)[0])
 
 
 @compiled
@@ -199,23 +180,17 @@ def _certain_rest(m: Model, i: int, x: float, t: float, to: float) -> float:
 @compiled
 def _rests_until(m: Model, i: int, x: float, t: float, end: float) -> float:
     """Time at which the drive overcomes the dry resistance of free gears at rest, at most `end`."""
-    if _overcomes(m, i, x, end) <= 0.0:
-        return end
-    low, high = t, end
-    for _ in range(_BISECTIONS):
-        middle = 0.5 * (low + high)
-        if _overcomes(m, i, x, middle) <= 0.0:
-            low = middle
-        else:
-            high = middle
-    return high
+    return end if _rests(end, m, i, x) else float(_end_of_rest(t, end, HALVINGS, 0.0, m, i, x)[1])
 
 
 @compiled
-def _overcomes(m: Model, i: int, x: float, t: float) -> float:
-    """Force beyond the dry resistance of free gears at rest."""
+def _rests(t: float, m: Model, i: int, x: float) -> bool:
+    """Whether the dry resistance holds free gears at rest."""
     push, limit = push_on_free(m, i, t, x), free_torque(m, i, LOAD, t, x, 0.0)
-    return abs(push) - limit - NO_FORCE
+    return bool(abs(push) - limit - NO_FORCE <= 0.0)
+
+
+_end_of_rest = bisected(_rests)
 
 
 @compiled

@@ -1,4 +1,4 @@
-"""From one accepted time to the next: a step of IDA, and the first root of the guard in it.
+"""The first root of the guard in a step, and the states of a step between its ends.
 
 IDA's own root finding evaluates the state twice and the guard at both ends of each step. Here the guard is evaluated
 once, at the state at the end of the step; only if it has fallen below zero is the root searched, between the ends of
@@ -22,10 +22,10 @@ from gearidae.engine import adams
 from gearidae.engine.events.asperity_events import first_grazing_minimum, note_step_start
 from gearidae.engine.events.events import guard
 from gearidae.engine.model.state import Floats, Model
-from gearidae.engine.motion.pair_forces import finish_deflections, is_eliminated, set_deflections
+from gearidae.engine.motion.pair_forces import is_eliminated, set_deflections
 from gearidae.engine.sundials import memory
 from gearidae.engine.sundials import names as sun
-from gearidae.engine.sundials.ida_memory import IDA, YP, Y
+from gearidae.engine.sundials.ida_memory import DKY, IDA, YP, Y
 from gearidae.engine.sundials.interpolation import solution_at
 
 SHARPNESS: Final = 0.01
@@ -72,26 +72,19 @@ class Stepper(NamedTuple):
 
 
 @compiled(inline=True)
-def _look(s: Stepper, t: float) -> float:
+def evaluate_guard(s: Stepper, t: float) -> float:
     """Evaluate the guard and count the evaluation."""
     s.m.work.search.evaluations += 1
     return guard(s.m, t, s.y)
 
 
 @compiled(inline=True)
-def _begin_interval(s: Stepper, low: float) -> None:
+def begin_interval(s: Stepper, low: float) -> None:
     """Search from the time reached on, where the guard is `low`."""
     search = s.m.work.search
     search.low, search.low_time = low, s.clock[0]
     if s.m.scene.population.flanks != 0:
         note_step_start(s.m, s.y)
-
-
-@compiled
-def start_search(s: Stepper) -> None:
-    """Begin at a time at which IDA has been started."""
-    _begin_interval(s, _look(s, s.clock[0]))
-    s.m.work.search.rest = s.m.work.search.stop = 0
 
 
 @compiled(inline=True)
@@ -109,62 +102,21 @@ def state_at(s: Stepper, t: float, roughly: bool) -> None:
 
 
 @compiled(inline=True)
-def next_time(s: Stepper) -> int:
-    """Advance to the first of the end of the next step, a stop and a root.
-
-    Returns
-    -------
-    int
-        IDA's flag.
-    """
-    search = s.m.work.search
-    if search.rest != 0:
-        _begin_interval(s, _look(s, s.clock[0]))
-        if abs(search.step_end - s.clock[0]) <= _rounding(s):
-            search.rest = 0
-    rest = search.rest != 0
-    if rest:
-        s.clock[0] = search.step_end
-        state_at(s, s.clock[0], True)
-    elif search.stop != 0:
-        return _stop(s)
+def state_for_sample(s: Stepper, t: float) -> None:
+    """State at a time within the last step, beside that at its end: in ``s.dky``."""
+    if s.m.work.driver.resting != 0:
+        for j in range(s.y.size):
+            s.dky[j] = s.y[j]
+    elif s.m.work.adams.order_used > 0:
+        adams.between(s.m.work.adams, t, s.dky, s.spare)
     else:
-        flag = _step(s)
-        if flag < 0:
-            return flag
-    high, end = _look(s, s.clock[0]), s.clock[0]
-    if s.m.scene.population.flanks != 0 and search.low > 0.0 < high:
-        high = _grazing_minimum(s, high)
-    if search.low > 0.0 > high:
-        search.step_end = end
-        search.rest = 1
-        if search.as_ida != 0:
-            _find_as_ida(s, high)
-        else:
-            _find(s, high, True)
-            if is_eliminated(s.m):
-                set_deflections(s.m, s.clock[0], s.y, False)
-                if _look(s, s.clock[0]) > 0.0:  # the interpolated deflections have been too far ahead
-                    s.clock[0] = search.step_end
-                    state_at(s, search.step_end, False)
-                    _find(s, high, False)
-        if s.m.scene.population.flanks != 0:
-            _find_dips(s)
-        return sun.IDA_ROOT_RETURN
-    unseen = search.low <= 0.0 and high < 0.0
-    _begin_interval(s, high)
-    search.rest = 0
-    if (
-        unseen
-    ):  # a guard has been below zero for the whole step: it is dealt with here, and hides no other any longer
-        return sun.IDA_ROOT_RETURN
-    if search.stop != 0:
-        return _stop(s)
-    return 0
+        sun.IDAGetDky(s.handles[IDA], t, 0, s.handles[DKY])
+    if is_eliminated(s.m):
+        set_deflections(s.m, t, s.dky, False)
 
 
 @compiled
-def _grazing_minimum(s: Stepper, high: float) -> float:
+def go_to_dip(s: Stepper, high: float) -> float:
     """Look where an asperity may dip below its guard within the interval; go there if it does.
 
     Returns
@@ -178,57 +130,27 @@ def _grazing_minimum(s: Stepper, high: float) -> float:
         return high
     s.clock[0] = low + share * (end - low)
     state_at(s, s.clock[0], False)
-    value = _look(s, s.clock[0])
+    value = evaluate_guard(s, s.clock[0])
     if value < 0.0:
         return value
     s.clock[0] = end
     state_at(s, end, False)
-    return _look(s, end)
+    return evaluate_guard(s, end)
 
 
 @compiled
-def _find_dips(s: Stepper) -> None:
+def find_dips(s: Stepper) -> None:
     """Look for dips before a root that has been found, and find the first of them instead."""
     for _ in range(DIPS):
         root = s.clock[0]
-        value = _grazing_minimum(s, 1.0)
+        value = go_to_dip(s, 1.0)
         if s.clock[0] == root:
             return
-        _find(s, value, True)
+        find_root(s, value, True)
 
 
 @compiled(inline=True)
-def _step(s: Stepper) -> int:
-    """Let IDA take a step; its flag."""
-    search, vectors = s.m.work.search, s.handles
-    flag = sun.IDASolve(
-        vectors[IDA], s.m.scene.end, s.clock.ctypes.data, vectors[Y], vectors[YP], sun.IDA_ONE_STEP
-    )
-    if flag < 0:
-        return flag
-    adams.keep(s.m.work.adams, s.clock[0], s.yp)
-    if is_eliminated(s.m):
-        finish_deflections(s.m, s.clock[0], s.y)
-    if search.as_ida != 0:
-        solution_at(vectors[IDA], s.clock[0], vectors[Y], vectors[YP])
-    if flag == sun.IDA_TSTOP_RETURN:  # the step itself may end a rounding error beside the stop
-        search.stop, search.stop_time = 1, s.clock[0]
-        sun.IDAGetCurrentTime(vectors[IDA], s.clock.ctypes.data)
-        state_at(s, s.clock[0], False)
-    return flag
-
-
-@compiled(inline=True)
-def _stop(s: Stepper) -> int:
-    """Return at a stop, after all roots before it have been handled."""
-    s.m.work.search.stop = 0
-    s.clock[0] = s.m.work.search.stop_time
-    state_at(s, s.clock[0], False)
-    return sun.IDA_TSTOP_RETURN
-
-
-@compiled(inline=True)
-def _rounding(s: Stepper) -> float:
+def rounding(s: Stepper) -> float:
     """Rounding error of times in this step."""
     return _ROUNDING * (abs(s.m.work.search.step_end) + abs(memory.step(s.handles[IDA])))
 
@@ -244,14 +166,14 @@ def _inverse(a: float, at_a: float, b: float, at_b: float, c: float, at_c: float
 
 
 @compiled
-def _find(s: Stepper, high: float, roughly: bool) -> None:
+def find_root(s: Stepper, high: float, roughly: bool) -> None:
     """Find when the guard has fallen, which is above zero at the interval's beginning and `high` at its end.
 
     `roughly` as for `state_at`.
     """
     search = s.m.work.search
     a, b, low = search.low_time, s.clock[0], search.low
-    tolerance = max(_rounding(s), search.sharpness * (b - a))
+    tolerance = max(rounding(s), search.sharpness * (b - a))
     c, left, here = a, low, b  # what was an end before, the guard there, and where the state is taken
     tries, wide = 0, b - a
     # the secant estimate is accepted without bracketing from the far side
@@ -268,7 +190,7 @@ def _find(s: Stepper, high: float, roughly: bool) -> None:
                 here = 0.5 * (a + b)
         here = min(max(here, a + 0.25 * tolerance), b - 0.25 * tolerance)
         state_at(s, here, roughly)
-        value = _look(s, here)
+        value = evaluate_guard(s, here)
         if value < 0.0:
             c, left, b, high = b, high, here, value
         else:
@@ -279,9 +201,9 @@ def _find(s: Stepper, high: float, roughly: bool) -> None:
 
 
 @compiled
-def _find_as_ida(s: Stepper, high: float) -> None:
+def find_root_as_ida(s: Stepper, high: float) -> None:
     """Find the same by IDA's rule."""
-    tolerance = _rounding(s)
+    tolerance = rounding(s)
     search = s.m.work.search
     a, b, low = search.low_time, s.clock[0], search.low
     weight = 1.0
@@ -299,7 +221,7 @@ def _find_as_ida(s: Stepper, high: float) -> None:
         if abs(b - middle) < 0.5 * tolerance:
             middle = b - inward * (b - a)
         state_at(s, middle, False)
-        value = _look(s, middle)
+        value = evaluate_guard(s, middle)
         before = side
         if value < 0.0:
             b, high, side = middle, value, 1
