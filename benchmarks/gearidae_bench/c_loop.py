@@ -81,7 +81,7 @@ def _pointer(array: NDArray[Any]) -> ctypes.c_void_p:
 
 
 def _run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
-    from gearidae.engine.integrate.callbacks import callbacks
+    from gearidae.engine.callbacks import callbacks
     from gearidae.engine.sundials import ida_memory as opened
     from gearidae_bench.c_calls import BLOCK_NUMBERS, VECTORS, WORDS, addresses
 

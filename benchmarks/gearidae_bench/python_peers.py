@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from sksundae.cvode import CVODE
 from sksundae.ida import IDA
 
+from gearidae.engine.entry_points import guard_at, jacobian_at, residual_at
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.record import EVENT_NUMBERS, EVENTS_AT_ONCE
-from gearidae.engine.integrate.entry_points import guard_at, jacobian_at, residual_at
 from gearidae.engine.integrate.start import set_rates
 from gearidae.engine.model.addresses import Addresses, model_at
 from gearidae.engine.model.state import GEARS, V, W

@@ -52,7 +52,7 @@ class Part(NamedTuple):
 _STEP, _NEWTON, _EVENTS = "IDA: attempts, tests, vectors, calls", "Newton's iteration", "epilogue of a step"
 PARTS: Final = (
     Part(_STEP, "step", "propose", ""),
-    Part(_NEWTON, "integrate.callbacks", "iterate", _STEP),
+    Part(_NEWTON, "callbacks", "iterate", _STEP),
     Part("formula: prediction", "step.adams", "rates_at_end", _NEWTON),
     Part("residual and slopes", "integrate.correction", "motion", _NEWTON),
     Part("formula: error, order, next step", "step", "control_step", _NEWTON),

@@ -9,8 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import gearidae as gd
-from gearidae.engine import adams
-from gearidae.engine.integrate import native
+from gearidae.engine import adams, native
 from gearidae.engine.model.state import ADAMS, MOST_ORDERS
 from gearidae.engine.setup.build import make_problem
 from gearidae.records import Statistics

@@ -8,7 +8,7 @@ import pytest
 
 import gearidae as gd
 from gearidae.engine import choose_backend, solve
-from gearidae.engine.integrate import native as native_driver
+from gearidae.engine import native as native_driver
 from gearidae.engine.sundials import names as sundials
 from gearidae.errors import SceneError
 from gearidae.records import EventKind

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import gearidae as gd
-from gearidae.engine import drivers, solve, step
+from gearidae.engine import drivers, native, portable, solve, step
 from gearidae.engine.backend import run_blocks
 from gearidae.engine.events.record import EVENTS_AT_ONCE
-from gearidae.engine.integrate import driver, native, portable, start
+from gearidae.engine.integrate import driver, start
 from gearidae.engine.model.state import PHASE
 from gearidae.engine.setup.build import make_problem
 from gearidae.records import Statistics

@@ -9,12 +9,11 @@ import pytest
 import gearidae as gd
 from gearidae.contact import asperity_of
 from gearidae.contact.elastic import ElasticFoldError, elastic_line_curve, elastic_line_force
-from gearidae.engine import backend, solve
+from gearidae.engine import backend, native, portable, solve
 from gearidae.engine.backend import run_blocks
 from gearidae.engine.changeover import change_over
 from gearidae.engine.elastic import layout as elastic
 from gearidae.engine.elastic.rows import JOINED, row_of
-from gearidae.engine.integrate import native, portable
 from gearidae.engine.integrate.driver import Ending
 from gearidae.engine.model.state import PHASE, V
 from gearidae.engine.motion.block_jacobian import (

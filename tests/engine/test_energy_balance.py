@@ -14,7 +14,7 @@ from gearidae.asperities.jkr import JOINING, S_FOLD, jkr_root
 from gearidae.contact import asperity_of
 from gearidae.contact.psi import psi
 from gearidae.engine import Start, solve
-from gearidae.engine.integrate import native as native_driver
+from gearidae.engine import native as native_driver
 from gearidae.engine.setup.build import make_problem
 from gearidae.formulas.quadrature import Ends, integral_of_cube, torque_work
 from gearidae.mesh import curvature_radii

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import gearidae as gd
+from gearidae.engine import portable
 from gearidae.engine.backend import run_blocks
-from gearidae.engine.integrate import portable
 from gearidae.engine.setup.build import make_problem
 from gearidae.records import Statistics
 

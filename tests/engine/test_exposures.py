@@ -265,7 +265,7 @@ def test_a_table_of_one_fraction_is_that_fraction(worn):
 
 
 def test_an_archive_and_a_resumed_run_have_them(worn, tmp_path, monkeypatch):
-    from gearidae.engine.integrate import native
+    from gearidae.engine import native
 
     path = tmp_path / "run.nc"
     scene = worn.gearidae.scene

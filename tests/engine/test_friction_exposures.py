@@ -106,7 +106,7 @@ def test_flanks_without_friction_keep_no_work_of_it(changes):
 
 
 def test_archives_and_resumed_runs_have_it(tmp_path, monkeypatch):
-    from gearidae.engine.integrate import native
+    from gearidae.engine import native
 
     monkeypatch.setattr(native, "BLOCK_STEPS", 500)
     scene = RUBBING.replace({"run.checkpoints": [2e-5, 4e-5]})

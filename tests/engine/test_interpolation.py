@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import gearidae as gd
-from gearidae.engine.integrate import native
-from gearidae.engine.integrate.callbacks import callbacks
+from gearidae.engine import native
+from gearidae.engine.callbacks import callbacks
 from gearidae.engine.integrate.driver import CONVERGENCE_FAILURES_HIGH
 from gearidae.engine.setup.build import make_problem
 from gearidae.engine.step import advance

@@ -11,6 +11,7 @@ from gearidae.archive.totals import imbalance_of
 from gearidae.engine import solve, step
 from gearidae.engine.backend import run_blocks
 from gearidae.engine.model.state import V, W
+from gearidae.engine.observers import finish
 from gearidae.engine.setup.build import make_problem
 from gearidae.records import Statistics
 
@@ -51,6 +52,8 @@ def calls(monkeypatch):
     names = []
     for name in ("adhesion_loss", "extremes", "friction_losses", "balance", "exposures"):
         monkeypatch.setattr(step, name, Recorder(name, names))
+        if hasattr(finish, name):
+            monkeypatch.setattr(finish, name, Recorder(name, names))
     return names
 
 
@@ -62,7 +65,7 @@ def follow(balance, exposures):
     step.account.py_func(m, 1.0, y, y, (True, True), (y, y))
     step.account_event.py_func(m, 1.0, y, y, turned)
     step.resume_account.py_func(m, 1.0, y, True, True)
-    step.finish_account.py_func(m, 1.0, y, y)
+    finish.finish_account.py_func(m, 1.0, y, y)
 
 
 def test_all_are_called_in_order(calls):

@@ -5,9 +5,9 @@ import pytest
 
 import gearidae as gd
 from balances import assert_balanced
-from gearidae.engine import solve
+from gearidae.engine import native, portable, solve
 from gearidae.engine.backend import run_blocks
-from gearidae.engine.integrate import driver, native, portable
+from gearidae.engine.integrate import driver
 from gearidae.engine.setup.build import make_problem
 from gearidae.records import EventKind, Passages, Statistics
 from gearidae.records.energy import TERMS

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gearidae.engine.integrate import native
+from gearidae.engine import native
 from gearidae.engine.integrate.roots import _inverse
 from gearidae.engine.setup.build import make_problem
 from gearidae.records import Statistics

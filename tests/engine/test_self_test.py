@@ -8,8 +8,8 @@ import pytest
 
 import gearidae as gd
 from gearidae.compiled import compiled_callback
+from gearidae.engine import callbacks as real
 from gearidae.engine import choose_backend, drivers, self_test
-from gearidae.engine.integrate import callbacks as real
 from gearidae.engine.model.addresses import model_at
 from gearidae.engine.step import Attempt, iterate
 from gearidae.engine.sundials import memory as ptr

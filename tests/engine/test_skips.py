@@ -128,7 +128,7 @@ for name in laws:
 
 import gearidae as gd
 from gearidae.engine import backend, compiling, solve
-from gearidae.engine.integrate import portable
+from gearidae.engine import portable
 
 stand_ins = ("Addresses", Addresses), ("model_at", models.__getitem__), ("numbers_of", numbers_of)
 for module in [m for name, m in sys.modules.items() if name.startswith("gearidae.engine")]:

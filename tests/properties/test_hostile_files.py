@@ -17,7 +17,7 @@ from gearidae.analysis.measured import read_signal
 from gearidae.archive import open_archive, unfinished
 from gearidae.archive.journal import Journal, journal_of
 from gearidae.cli import main
-from gearidae.engine.integrate import portable
+from gearidae.engine import portable
 from gearidae.errors import SceneError
 from gearidae.scene import Scene, dump_case
 

@@ -48,7 +48,7 @@ setattr(module, name, marked)
 sys.exit(main(sys.argv[2:]))
 """
 BUILD, CONTACT = "gearidae.engine.setup.build", "gearidae.engine.setup.build_contact"
-UPDATE = "gearidae.engine.integrate.native:update_statistics"
+UPDATE = "gearidae.engine.native:update_statistics"
 
 
 def cpu_of(pid):

@@ -24,7 +24,8 @@ import gearidae as gd
 from gearidae.archive import definition, journal, netcdf, unfinished
 from gearidae.archive.journal import journal_of
 from gearidae.cli import main
-from gearidae.engine.integrate import driver, native, portable
+from gearidae.engine import native, portable
+from gearidae.engine.integrate import driver
 from gearidae.records import COUNTERS
 from gearidae.runs import streaming
 from gearidae.runs.kept_validity import largest_force

@@ -50,7 +50,7 @@ def coating_map(**options):
 @pytest.fixture
 def ctrl_c(monkeypatch):
     """Send SIGINT as a run has come to its fourth block; count the blocks after it."""
-    native = import_module("gearidae.engine.integrate.native")
+    native = import_module("gearidae.engine.native")
     real, counts = native.update_statistics, []
 
     def counted(*args):

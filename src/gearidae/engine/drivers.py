@@ -31,7 +31,7 @@ _solver_compiling = partial(compiling, SOLVER, HOW_LONG[SOLVER], FUNCTIONS[SOLVE
 def load_driver(backend: str) -> ModuleType:
     """Import a driver; late, as the native one compiles its callbacks when it is imported."""
     with _solver_compiling():
-        driver = import_module(f"gearidae.engine.integrate.{'native' if backend == 'native' else 'portable'}")
+        driver = import_module(f"gearidae.engine.{'native' if backend == 'native' else 'portable'}")
         make_part_ready(SOLVER)  # what only drivers call has been declared now
         return driver
 
@@ -82,7 +82,7 @@ def ready_driver(backend: str, problem: Problem) -> Callable[..., Iterator[Block
     Returns
     -------
     callable
-        The driver's ``run``, see `gearidae.engine.integrate.native.run`.
+        The driver's ``run``, see `gearidae.engine.native.run`.
     """
     run: Callable[..., Iterator[Block]] = load_driver(backend).run
     as_ida = backend == "native" and native_formulas(problem.method) != ADAMS

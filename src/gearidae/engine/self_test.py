@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.compiled import cache_folder, is_cached
-from gearidae.engine.integrate import native
+from gearidae.engine import native
 from gearidae.engine.setup.build import make_problem
 from gearidae.engine.setup.problem import Problem
 from gearidae.records import EVENT, EventKind, Statistics

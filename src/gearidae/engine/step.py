@@ -16,7 +16,7 @@ r"""One step of a run, from one accepted time to the next. Read this page first:
 Within a step all equations are smooth: histories, sides of laws, directions of slip and segments of schedules change
 in `switch` alone, so that each of IDA's attempts at a step solves one and the same problem. IDA keeps the loop of
 attempts; it is entered in `propose` and calls `iterate` back. The portable driver
-(`gearidae.engine.integrate.portable`) has its own way from one time to the next, by scikit-sundae, and everything from
+(`gearidae.engine.portable`) has its own way from one time to the next, by scikit-sundae, and everything from
 `finish_step` on in common.
 
 What one stage tells the next is an argument or a result. ``m.work`` keeps what has to outlive a step: the history of
@@ -95,6 +95,7 @@ from gearidae.engine.observers import adhesion_loss, balance, friction_losses
 from gearidae.engine.observers.exposures import follow as exposures
 from gearidae.engine.observers.exposures.contacts import add_asperity_switches
 from gearidae.engine.observers.extremes import follow as extremes
+from gearidae.engine.observers.finish import finish_account
 from gearidae.engine.observers.passages import PASSAGES_AT_ONCE, write_passages
 from gearidae.engine.pairs.tooth_pairs import flank_of_history, in_flight, list_known
 from gearidae.engine.sundials import names as sun
@@ -665,7 +666,7 @@ def prepare_restart(m: Model, t: float, y: Floats, yp: Floats) -> None:
     m.state.progress.restarts += 1
 
 
-# -- observers at an event, at the end and for a look in between -----------------------------------------------------
+# -- observers at an event --------------------------------------------------------------------------------------------
 
 
 @compiled(inline=True)
@@ -698,36 +699,6 @@ def resume_account(m: Model, t: float, y: Floats, crossed: bool, joined: bool) -
         friction_losses.note_friction(m, t, y)
     if m.scene.follow.extremes != 0:
         extremes.resume(m, t, y)
-
-
-@compiled
-def finish_account(m: Model, t: float, y: Floats, yp: Floats) -> None:
-    """Bring all sums up to an accepted time."""
-    if m.scene.follow.balance != 0:
-        balance.finish(m, t, y, yp)
-    if m.scene.follow.exposures != 0:
-        exposures.finish(m, t, y, yp)
-
-
-@compiled
-def look_at(place: int, t: float, y: Floats, yp: Floats) -> None:
-    """Finish as for the end of a run, of which the last state may be an extreme.
-
-    Parameters
-    ----------
-    place : int
-        Of the model, from `gearidae.engine.model.addresses.Addresses`.
-    t : float
-        Time over tau.
-    y, yp : ndarray, shape (n,)
-        State there, and its rate.
-    """
-    m = model_at(place)
-    finish_account(m, t, y, yp)
-    if m.scene.follow.extremes != 0:
-        extremes.note_present(m, y)
-    if m.scene.follow.balance != 0:
-        balance.look(m, t, y)
 
 
 # -- what a block of steps has cost ----------------------------------------------------------------------------------

@@ -17,7 +17,7 @@ from gearidae.arrays import Floats
 from gearidae.contact.history import extreme_gap, joined_height
 from gearidae.engine.backend import follow
 from gearidae.engine.elastic.rows import JOINED, SHARE, first_unknown, row_of
-from gearidae.engine.integrate.entry_points import observe_at
+from gearidae.engine.entry_points import observe_at
 from gearidae.engine.model.state import PHASE, Model, U, V, W, assign, copied
 from gearidae.engine.motion.pair_forces import force_of_one
 from gearidae.engine.pairs.tooth_pairs import all_pairs, history_of, pair_at, pair_gap

@@ -1,4 +1,5 @@
-"""From one accepted time to the next: formulas, step control, Newton iteration, root finding, and the two drivers.
+"""What a step is made of: first step, correction, step control, root search, gears at rest, and blocks of output.
 
-Everything here is about time integration; the physics is in `gearidae.engine.motion`.
+Everything here is about time integration; the physics is in `gearidae.engine.motion`, and the order of a step in
+`gearidae.engine.step`.
 """

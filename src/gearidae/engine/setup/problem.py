@@ -24,9 +24,9 @@ from gearidae.engine.model.state import (
 )
 from gearidae.engine.observers.exposures.bins import exposures_of
 from gearidae.engine.observers.extremes.units import extremes_in_si
+from gearidae.engine.observers.finish import look_at
 from gearidae.engine.setup import checkpoint as checkpoints
 from gearidae.engine.setup.kept_asperities import restore_asperities
-from gearidae.engine.step import look_at
 from gearidae.errors import SceneError
 from gearidae.laws.shaft.harmonic import fastest_harmonic
 from gearidae.laws.shaft.schedule import fastest_schedule

@@ -13,7 +13,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from gearidae.compiled import compiled
-from gearidae.engine.integrate.callbacks import callbacks
+from gearidae.engine.callbacks import callbacks
+from gearidae.engine.entry_points import observe_at
 from gearidae.engine.integrate.driver import (
     BLOCK_SECONDS,
     BLOCK_STEPS,
@@ -27,7 +28,6 @@ from gearidae.engine.integrate.driver import (
     sample_time,
     update_statistics,
 )
-from gearidae.engine.integrate.entry_points import observe_at
 from gearidae.engine.integrate.roots import SHARPNESS, Arrays, Stepper, state_for_sample
 from gearidae.engine.model.addresses import model_at
 from gearidae.engine.model.state import Floats, Model

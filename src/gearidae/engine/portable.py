@@ -17,6 +17,16 @@ import numpy as np
 from sksundae.ida import IDA
 
 from gearidae.compiled import compiled
+from gearidae.engine.entry_points import (
+    finish_step_at,
+    first_grazing_minimum_at,
+    guard_at,
+    jacobian_at,
+    note_step_start_at,
+    observe_at,
+    residual_at,
+    rest_step_at,
+)
 from gearidae.engine.events.events import ROOT, STOP
 from gearidae.engine.events.stops import next_stop
 from gearidae.engine.integrate.driver import (
@@ -31,16 +41,6 @@ from gearidae.engine.integrate.driver import (
     ending_of_flag,
     sample_time,
     update_statistics,
-)
-from gearidae.engine.integrate.entry_points import (
-    finish_step_at,
-    first_grazing_minimum_at,
-    guard_at,
-    jacobian_at,
-    note_step_start_at,
-    observe_at,
-    residual_at,
-    rest_step_at,
 )
 from gearidae.engine.integrate.resting import longest_step
 from gearidae.engine.integrate.start import first_step
@@ -67,7 +67,7 @@ def run(
     resume: Floats | None = None,
     reader: SampleReader | None = None,
 ) -> Iterator[Block]:
-    """Run a problem, block by block; see `gearidae.engine.integrate.native.run`."""
+    """Run a problem, block by block; see `gearidae.engine.native.run`."""
     m = problem.prepare(rtol, total)
     if m.scene.states > STATES_HIGH:
         raise SceneError(

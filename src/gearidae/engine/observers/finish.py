@@ -1,0 +1,40 @@
+"""Observers at the end of a run, before a restart, and for a look in between, after which the model is restored."""
+
+from __future__ import annotations
+
+from gearidae.compiled import compiled
+from gearidae.engine.model.addresses import model_at
+from gearidae.engine.model.state import Floats, Model
+from gearidae.engine.observers import balance
+from gearidae.engine.observers.exposures import follow as exposures
+from gearidae.engine.observers.extremes import follow as extremes
+
+
+@compiled
+def finish_account(m: Model, t: float, y: Floats, yp: Floats) -> None:
+    """Bring all sums up to an accepted time."""
+    if m.scene.follow.balance != 0:
+        balance.finish(m, t, y, yp)
+    if m.scene.follow.exposures != 0:
+        exposures.finish(m, t, y, yp)
+
+
+@compiled
+def look_at(place: int, t: float, y: Floats, yp: Floats) -> None:
+    """Finish as for the end of a run, of which the last state may be an extreme.
+
+    Parameters
+    ----------
+    place : int
+        Of the model, from `gearidae.engine.model.addresses.Addresses`.
+    t : float
+        Time over tau.
+    y, yp : ndarray, shape (n,)
+        State there, and its rate.
+    """
+    m = model_at(place)
+    finish_account(m, t, y, yp)
+    if m.scene.follow.extremes != 0:
+        extremes.note_present(m, y)
+    if m.scene.follow.balance != 0:
+        balance.look(m, t, y)
