@@ -12,8 +12,7 @@ import xarray as xr
 import gearidae as gd
 from gearidae.archive.citing import references_of
 from gearidae.archive.provenance import provenance
-from gearidae.asperities import law_names
-from gearidae.asperities.registry import law_references
+from gearidae.asperities import law_class, law_names
 from gearidae.references import ARCHARD_1953
 from gearidae.scene.surface_library import COATINGS, SOLIDS
 from gearidae.wear import loss_law_names
@@ -59,7 +58,7 @@ def test_a_life_cites_its_law_of_wear():
 
 
 def test_every_law_of_the_package_has_a_reference():
-    assert all(law_references(name) for name in law_names())
+    assert all(law_class(name).references for name in law_names())
     assert all(loss_law_references(name) for name in loss_law_names())
 
 

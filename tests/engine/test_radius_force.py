@@ -6,10 +6,10 @@ import pytest
 import gearidae as gd
 from gearidae.engine import solve
 from gearidae.engine.laws.pairs import stored_energy
+from gearidae.engine.laws.statistical import set_joined
 from gearidae.engine.model.state import PHASE, U, V, W
 from gearidae.engine.motion.pair_forces import mesh_forces
 from gearidae.engine.motion.residual import jacobian, residual
-from gearidae.engine.laws.statistical import set_joined
 from gearidae.engine.pairs.tooth_pairs import history_of
 from gearidae.engine.setup.build import make_problem
 

@@ -5,10 +5,10 @@ import pytest
 
 import gearidae as gd
 from gearidae.contact import line_force
+from gearidae.engine.laws.statistical import pair_force, set_joined
 from gearidae.engine.model.state import U, V
 from gearidae.engine.motion.residual import jacobian, residual
 from gearidae.engine.pairs.coverage import WHOLE
-from gearidae.engine.laws.statistical import pair_force, set_joined
 from gearidae.engine.pairs.tooth_pairs import history_of
 from gearidae.engine.setup.build import make_problem
 

@@ -126,7 +126,7 @@ MUTANTS = (
     ),
     Mutant(
         "history not followed through a turning point within a step",
-        "engine/pairs/tooth_pairs.py",
+        "engine/laws/statistical.py",
         "turned = h.direction * rate < 0.0",
         "turned = False",
         MESH,
@@ -190,7 +190,7 @@ MUTANTS = (
     Mutant(
         "mesh damping left out",
         "engine/motion/shafts.py",
-        "force = mesh.force + m.scene.damping * y[V]",
+        "force = mesh_force(m, y[V], mesh.force)",
         "force = mesh.force",
         SHAFTS,
     ),
@@ -308,7 +308,7 @@ MUTANTS = (
     ),
     Mutant(
         "a branch of the stored energy kept beyond the turning point that ends it",
-        "engine/pairs/tooth_pairs.py",
+        "engine/laws/statistical.py",
         "+ B_PIECES] = 0.0",
         "+ B_PIECES] *= 1.0",
         ("engine/test_energy_balance.py",),
@@ -578,14 +578,14 @@ MUTANTS = (
     ),
     Mutant(
         "energy of the attraction across the gap too small by a half",
-        "engine/pairs/coverage.py",
+        "engine/laws/attraction.py",
         "energy = -2.0 / 3.0 * pull * near",
         "energy = -1.0 / 3.0 * pull * near",
         ("engine/test_attraction.py::test_gears_apart_are_pulled_by_both_flanks_and_along_the_path",),
     ),
     Mutant(
         "attraction along the path of contact with the other sign",
-        "engine/pairs/attraction_force.py",
+        "engine/laws/attraction.py",
         "-path, -by_gap, -by_place",
         "path, -by_gap, -by_place",
         ("engine/test_attraction.py::test_gears_apart_are_pulled_by_both_flanks_and_along_the_path",),

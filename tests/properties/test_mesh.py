@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 
 import gearidae as gd
 from gearidae.engine.events.histories import begin
+from gearidae.engine.laws.statistical import pair_force, set_joined
 from gearidae.engine.motion.pair_forces import mesh_forces
 from gearidae.engine.motion.residual import jacobian, residual
 from gearidae.engine.pairs.coverage import WHOLE
-from gearidae.engine.laws.statistical import pair_force, set_joined
 from gearidae.engine.pairs.tooth_pairs import (
     all_pairs,
     history_of,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import gearidae
 from gearidae.archive.select import scene_of
-from gearidae.asperities.registry import law_references
+from gearidae.asperities import law_class
 from gearidae.errors import SceneError
 from gearidae.references import (
     FULLER_TABOR_1975,
@@ -82,7 +82,7 @@ def references_of(ds: xr.Dataset) -> tuple[Reference, ...]:
 def _of_scene(scene: Scene, ds: xr.Dataset) -> Iterator[Reference]:
     yield TEODORESCU_2009
     contact = scene.contact
-    yield from law_references(contact.asperity)
+    yield from law_class(contact.asperity).references
     yield GREENWOOD_WILLIAMSON_1966
     if contact.roughness == "statistical":
         yield FULLER_TABOR_1975

@@ -33,7 +33,7 @@ class ContactArea(AsperityLaw):
     Attributes
     ----------
     law : AsperityLaw
-        One that has an area, see `gearidae.asperities.has_area`.
+        One that has an area, see `gearidae.asperities.AsperityLaw.has_area`.
     """
 
     name: ClassVar[str] = "area"

@@ -156,6 +156,11 @@ class AsperityLaw(ABC):
         """
         raise NotImplementedError(f"the law {self.name} has no contact area")
 
+    @classmethod
+    def has_area(cls) -> bool:
+        """Whether the law has a contact area, which friction by a shear strength needs."""
+        return cls.area is not AsperityLaw.area
+
     def area_nodes(self, low: ArrayLike, high: ArrayLike, x: Floats, w: Floats) -> tuple[Floats, Floats]:
         """Lay a quadrature rule of the area between two displacements; as `nodes`, with the area for the load."""
         displacement, measure = self._rule_of_fold(low, high, x, w)

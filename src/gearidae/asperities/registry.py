@@ -19,7 +19,6 @@ from gearidae.arrays import Floats
 from gearidae.asperities.base import AsperityLaw
 from gearidae.asperities.tip import Asperity, Surface, asperity_of, make_tip
 from gearidae.errors import SceneError
-from gearidae.references import Reference
 from gearidae.registry import Registry
 
 Law = TypeVar("Law", bound=type[AsperityLaw])
@@ -68,8 +67,8 @@ def law_names() -> tuple[str, ...]:
     return _LAWS.names()
 
 
-def has_area(name: str) -> bool:
-    """Whether a law has a contact area, which friction by a shear strength needs.
+def law_class(name: str) -> type[AsperityLaw]:
+    """Return the class of a law, which says what it needs, where it was published and whether it has an area.
 
     Parameters
     ----------
@@ -81,39 +80,7 @@ def has_area(name: str) -> bool:
     SceneError
         If there is no such law.
     """
-    return _LAWS.find(name).area is not AsperityLaw.area
-
-
-def law_needs(name: str) -> tuple[str, ...]:
-    """Return the keys of the table ``surface`` that a law needs.
-
-    Parameters
-    ----------
-    name : str
-        The law's name.
-
-    Raises
-    ------
-    SceneError
-        If there is no such law.
-    """
-    return _LAWS.find(name).needs
-
-
-def law_references(name: str) -> tuple[Reference, ...]:
-    """Return the publications of a law.
-
-    Parameters
-    ----------
-    name : str
-        The law's name.
-
-    Raises
-    ------
-    SceneError
-        If there is no such law.
-    """
-    return _LAWS.find(name).references
+    return _LAWS.find(name)
 
 
 def law_of_tip(name: str, tip: Asperity, unit: float) -> AsperityLaw:
@@ -133,7 +100,7 @@ def law_of_tip(name: str, tip: Asperity, unit: float) -> AsperityLaw:
     SceneError
         If there is no such law, or it fails.
     """
-    law = _LAWS.find(name)
+    law = law_class(name)
     with _naming(law, "of"):
         made = law.of(tip, unit)
     if not isinstance(made, AsperityLaw):

@@ -88,7 +88,7 @@ def line_area(
     gap, stretch, radius, width, surface
         As for `line_force`.
     asperity : str, optional
-        Name of a law that has an area, see `gearidae.asperities.has_area`.
+        Name of a law that has an area, see `gearidae.asperities.AsperityLaw.has_area`.
 
     Returns
     -------

@@ -27,6 +27,7 @@ from gearidae.engine.changeover import (
 )
 from gearidae.engine.events.asperity_events import join_at_start
 from gearidae.engine.events.histories import accept
+from gearidae.engine.events.law_switches import set_shaft_sides
 from gearidae.engine.events.sliding import begin_sliding, settle_start
 from gearidae.engine.integrate.start import rebase
 from gearidae.engine.laws.pairs import stored_energy
@@ -132,6 +133,8 @@ def checkpoint_of_start(scene: Scene, start: Start) -> Floats:
     _carry_contacts(old, old_y, new, y, changed=changed)
     _begin_stretch(m)
     _hold_or_slip(source, m, time, y)
+    if m.scene.guarded != 0:
+        set_shaft_sides(m, y)
     if source.scene.follow.balance != m.scene.follow.balance:
         _begin_balance(m, y)
     if source.scene.follow.passages != m.scene.follow.passages:

@@ -45,7 +45,6 @@ from gearidae.engine.events.law_switches import (
     note_law_jump,
     set_law_sides,
     set_law_window,
-    set_shaft_sides,
     switch_shafts,
 )
 from gearidae.engine.events.pair_events import PairEvent, find_event, take_event
@@ -639,8 +638,6 @@ def prepare_start(m: Model, t: float, y: Floats, yp: Floats) -> None:
     set_law_window(m)
     if m.scene.law_switches != 0:
         set_law_sides(m, t, y)
-    if m.scene.guarded != 0:
-        set_shaft_sides(m, y)
     if m.scene.friction.ages != 0:
         begin_ageing(m, t, y)
     driver.resting = 1 if begin_rest(m, t, y) else 0

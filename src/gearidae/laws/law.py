@@ -244,21 +244,27 @@ class ShaftLaw:
     slowing: Verb | None = None
 
 
+def on_shaft(shaft: int, name: str) -> str:
+    """Return the name of a key, a sample or an event of a shaft, with the shaft's name before its own."""
+    return f"{SHAFT_NAMES[shaft]}_{name}"
+
+
 def number_of(scene: Any, shaft: int, name: str) -> float:
     """Number of a key of a shaft in the gears' table, see `Key`."""
-    return float(getattr(scene.gears, f"{SHAFT_NAMES[shaft]}_{name}"))
+    return float(getattr(scene.gears, on_shaft(shaft, name)))
 
 
 def in_turn(verbs: tuple[Verb | None, ...]) -> Any:
     """Make one compiled function of verbs that are called one after the other, each with what the last has returned."""
-    first, *others = (verb for verb in verbs if verb is not None)
-    return reduce(_after, others, first)
+    *others, last = (verb for verb in verbs if verb is not None)
+    return reduce(_before, reversed(others), last)
 
 
-def _after(before: Verb, verb: Verb) -> Verb:
-    # closures, and not code that is put together: numba keeps each on disk by what it closes over
+def _before(rest: Verb, verb: Verb) -> Verb:
+    # closures, and not code that is put together: numba keeps each on disk by what it closes over; the first verb is
+    # outermost, so that the code of the first ones, the longest, is compiled into one closure and not into all
     @compiled(inline=True)
     def both(*arguments: Any) -> Any:
-        return verb(*arguments[:-1], before(*arguments))
+        return rest(*arguments[:-1], verb(*arguments))
 
     return both

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from gearidae.compiled import compiled
 from gearidae.formulas.quadrature import Ends
-from gearidae.laws.law import DRIVE, SHAFT_NAMES, Range, ShaftLaw, Verb, in_turn, number_of
+from gearidae.laws.law import DRIVE, SHAFT_NAMES, Range, ShaftLaw, Verb, in_turn, number_of, on_shaft
 from gearidae.laws.shaft.constant import CONSTANT
 from gearidae.laws.shaft.drag import DRAG
 from gearidae.laws.shaft.harmonic import HARMONICS, ORDERS
@@ -162,7 +162,7 @@ def has_law(scene: Any, shaft: int, law: ShaftLaw) -> bool:
 def sampled_laws(scene: Any) -> tuple[str, ...]:
     """Names of the columns that laws of the shafts sample of a scene, in the order in which they are written."""
     return tuple(
-        f"{SHAFT_NAMES[shaft]}_{law.sample.name}"
+        on_shaft(shaft, law.sample.name)
         for shaft in range(len(SHAFT_NAMES))
         for law in SAMPLED
         if law.sample is not None and has_law(scene, shaft, law)

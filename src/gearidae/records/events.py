@@ -9,7 +9,7 @@ from typing import ClassVar, Final
 
 import numpy as np
 
-from gearidae.laws.law import SHAFT_NAMES
+from gearidae.laws.law import on_shaft
 from gearidae.laws.shafts import SHAFT_LAWS
 from gearidae.records.rows import FLAG, RowColumn, Rows, places
 
@@ -37,7 +37,7 @@ class EventKind(IntEnum):
     FLANK_SLIP = 14
     for declared in (event for law in SHAFT_LAWS for event in law.events):
         for shaft in (0, 1):
-            vars()[f"{SHAFT_NAMES[shaft]}_{declared.name}".upper()] = declared.numbers[shaft]
+            vars()[on_shaft(shaft, declared.name).upper()] = declared.numbers[shaft]
 
 
 class Flank(IntEnum):

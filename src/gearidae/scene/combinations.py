@@ -12,7 +12,7 @@ from itertools import combinations as pairs_of
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from gearidae.errors import SceneError
-from gearidae.laws.law import DRIVE, LOAD, SHAFT_NAMES, ShaftLaw
+from gearidae.laws.law import DRIVE, LOAD, ShaftLaw, on_shaft
 from gearidae.laws.pairs import MESH_LAWS, has_mesh_law
 from gearidae.laws.shafts import SHAFT_LAWS, has_law
 from gearidae.scene.friction import has_flank_friction
@@ -47,7 +47,7 @@ def _of_law(law: ShaftLaw) -> Feature:
     def is_in(scene: Scene) -> bool:
         return scene.gears is not None and any(has_law(scene, shaft, law) for shaft in (DRIVE, LOAD))
 
-    return Feature(f"gears.{SHAFT_NAMES[LOAD]}_{law.coefficients[0].name}", is_in)
+    return Feature(f"gears.{on_shaft(LOAD, law.coefficients[0].name)}", is_in)
 
 
 def _flanks_rub(scene: Scene, law: str) -> bool:

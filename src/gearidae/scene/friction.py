@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from gearidae.asperities import has_area, law_names
+from gearidae.asperities import law_class, law_names
 from gearidae.errors import SceneError
 from gearidae.mesh.friction import locking_coefficients
 
@@ -88,8 +88,8 @@ def _check_law(scene: Scene) -> None:
     """Refuse a law without its values, and values of the other law."""
     contact, coating = scene.contact, scene.coating
     if contact.friction_law == "shear":
-        if not has_area(contact.asperity):
-            with_area = ", ".join(name for name in law_names() if has_area(name))
+        if not law_class(contact.asperity).has_area():
+            with_area = ", ".join(name for name in law_names() if law_class(name).has_area())
             raise SceneError(
                 "contact.friction_law",
                 "shear",

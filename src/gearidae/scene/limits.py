@@ -6,7 +6,7 @@ import math
 import sys
 from typing import TYPE_CHECKING, Final
 
-from gearidae.asperities import law_names, law_needs, law_of
+from gearidae.asperities import law_class, law_names, law_of
 from gearidae.asperities.ranges import GAP_LOW
 from gearidae.asperities.ranges import check_reach as check_asperity_reach
 from gearidae.errors import SceneError
@@ -33,8 +33,8 @@ def check_stretch(scene: Scene) -> None:
         Naming ``surface.roughness``, or the key.
     """
     name = scene.contact.asperity
-    for key in sorted({key for law in law_names() for key in law_needs(law)}):
-        value, needed = getattr(scene.surface, key, None), key in law_needs(name)
+    for key in sorted({key for law in law_names() for key in law_class(law).needs}):
+        value, needed = getattr(scene.surface, key, None), key in law_class(name).needs
         if value is None and needed:
             raise SceneError(f"surface.{key}", "(missing)", f'is required with contact.asperity = "{name}"')
         if value is not None and not needed:

@@ -56,7 +56,7 @@ def shaft_guard(m: Model, y: Floats) -> float:
 
 @compiled
 def set_shaft_sides(m: Model, y: Floats) -> None:
-    """Switch all laws that act on the shafts to a state at which a run begins: a continued run may have other keys."""
+    """Switch all laws that act on the shafts to a state at which a run begins: one that goes on may have other keys."""
     for shaft in range(2):
         angle, speed = torque_angle(m, shaft, y[U], y[PHASE]), _speed(m, shaft, y)
         while m.scene.torque[shaft].acts != 0 and switch(m, shaft, angle, speed, -1) >= 0:

@@ -86,7 +86,8 @@ def joint_friction_rate(m: Model, t: float, y: Floats) -> JointFriction:
     f = m.scene.friction
     if f.ages == 0:
         return JointFriction(0.0, 0.0, 0.0, 0.0, 0.0)
-    ages, speeds = _ages(m, t, y), _ways(m, y)[1]
+    motion = _base_circles(m, y)
+    ages, speeds = _ages(m, t, motion), _ways(m, motion)[1]
     first = _rise_rate(m, PINION_HUB, ages[PINION_HUB], speeds[0])
     second = _rise_rate(m, GEAR_HUB, ages[GEAR_HUB], speeds[1])
     third = _rise_rate(m, PIN, ages[PIN], speeds[0])
@@ -113,7 +114,7 @@ def coefficients(m: Model, t: float, y: Floats) -> tuple[float, float, float]:
 @compiled_once(FRICTION)
 def _rises(m: Model, t: float, y: Floats) -> tuple[float, float, float]:
     """By how much the coefficients of hubs and pin have risen."""
-    ages = _ages(m, t, y)
+    ages = _ages(m, t, _base_circles(m, y))
     return (
         _rise(m, PINION_HUB, ages[PINION_HUB]),
         _rise(m, GEAR_HUB, ages[GEAR_HUB]),
@@ -137,22 +138,28 @@ def _rise_rate(m: Model, joint: int, age: float, speed: float) -> float:
 @compiled_once(FRICTION)
 def follow_ageing(m: Model, t: float, y: Floats) -> None:
     """Take the ages of an accepted time over, with the directions of slip that the step had."""
-    ages = _ages(m, t, y)
+    motion = _base_circles(m, y)
+    ages = _ages(m, t, motion)
     for joint in range(3):
         m.state.ageing.age[joint] = ages[joint]
-    begin_ageing(m, t, y)
+    _note(m, t, motion)
 
 
 @compiled_once(FRICTION)
 def begin_ageing(m: Model, t: float, y: Floats) -> None:
     """Note ways and speeds of a state whose ages are known."""
-    shafts, ageing = _shafts(m, y), m.state.ageing
+    _note(m, t, _base_circles(m, y))
+
+
+@compiled(inline=True)
+def _note(m: Model, t: float, motion: tuple[float, float, float, float]) -> None:
+    ageing = m.state.ageing
     ageing.time = t
-    ageing.way[0], ageing.way[1], ageing.speed[0], ageing.speed[1] = shafts
+    ageing.way[0], ageing.way[1], ageing.speed[0], ageing.speed[1] = motion
 
 
 @compiled
-def _shafts(m: Model, y: Floats) -> tuple[float, float, float, float]:
+def _base_circles(m: Model, y: Floats) -> tuple[float, float, float, float]:
     """Ways and speeds of the base circles of pinion and gear."""
     gear = y[PHASE] / m.scene.phase_rate
     turn, e = pinion_speed(m, y)
@@ -160,22 +167,24 @@ def _shafts(m: Model, y: Floats) -> tuple[float, float, float, float]:
 
 
 @compiled
-def _ways(m: Model, y: Floats) -> tuple[tuple[float, float], tuple[float, float]]:
+def _ways(
+    m: Model, motion: tuple[float, float, float, float]
+) -> tuple[tuple[float, float], tuple[float, float]]:
     """Ways since the last accepted time and speeds, of pinion and gear in their directions of slip; 0 of what is held.
 
     Just behind a reversal that is still to be found a way is below zero, so that nothing has a corner there.
     """
-    x, z, turn, w = _shafts(m, y)
+    x, z, turn, w = motion
     slip, gear_slip, ageing = m.state.pinion_slip, m.state.slip, m.state.ageing
     ways = slip * (x - ageing.way[0]), gear_slip * (z - ageing.way[1])
     return ways, (slip * turn, gear_slip * w)
 
 
 @compiled
-def _ages(m: Model, t: float, y: Floats) -> tuple[float, float, float]:
+def _ages(m: Model, t: float, motion: tuple[float, float, float, float]) -> tuple[float, float, float]:
     """Ages of the contacts of hubs and pin."""
     ageing, h = m.state.ageing, t - m.state.ageing.time
-    ways, speeds = _ways(m, y)
+    ways, speeds = _ways(m, motion)
     first, second = m.state.pinion_slip * ageing.speed[0], m.state.slip * ageing.speed[1]
     forgetting, age = m.scene.friction.forgetting, ageing.age
     pinion = later_age(age[PINION_HUB], h, ways[0], first, speeds[0], forgetting[PINION_HUB])

@@ -34,34 +34,29 @@ from gearidae.engine.pairs.coverage import (
 )
 from gearidae.engine.pairs.lengths import length_and_rates, slopes_along_path, weighed_length
 from gearidae.engine.pairs.tooth_pairs import PairState, contact_length, flank_of_history, is_on_path
-from gearidae.laws.pair_law import NO_PAIR_FORCE, PairForce, PairLaw, both_forces, of_contact, of_path
+from gearidae.laws.pair_law import NO_PAIR_FORCE, PairForce, PairLaw, both_forces, of_path
 
 
 @compiled_once(ELASTIC_PART, makes_arrays=True)
-def _with_limit(
-    m: Model, t: float, y: Floats, pair: PairState, length: float, settling: bool, f: PairForce
-) -> PairForce:
-    """Return the force of an elastic pair with the limit of its friction, of materials with different coefficients."""
-    follow = row(m, pair.k, TANGENT) if settling else np.zeros(m.scene.nodes)
-    limit, slope = limit_of_nodes(m, t, y, pair, length, follow)
-    return PairForce(
-        f.load, f.by_gap, 0.0, 0.0, f.contact, f.contact_by_gap, 0.0, 0.0, 0.0, limit, slope, 0.0
-    )
-
-
-@compiled(inline=True)
-def _force(m: Model, t: float, y: Floats, pair: PairState, settling: bool, value: PairForce) -> PairForce:
+def _of_pair(m: Model, t: float, y: Floats, pair: PairState, settling: bool) -> PairForce:
+    """Force of a pair; of materials with different coefficients with the limit of its friction."""
     note_shares(m, pair.k, pair.coast, pair.number, pair.place)
     length = contact_length(m, pair.place)
     if settling:
         load, slope = condense_pair(m, pair.k, pair.known, t, y, pair.gap, pair.rate, length)
     else:
         load, slope = node_force(m, pair.k, pair.known, t, y, pair.gap, pair.rate, length)
-    force = of_contact(load, slope)
+    limit = limit_by_gap = 0.0
     if rubs_by_material(m):
-        force = _with_limit(m, t, y, pair, length, settling, force)
-    value = both_forces(value, force)
-    return both_forces(value, _along_path(m, t, y, pair)) if m.scene.curvature_force != 0 else value
+        follow = row(m, pair.k, TANGENT) if settling else np.zeros(m.scene.nodes)
+        limit, limit_by_gap = limit_of_nodes(m, t, y, pair, length, follow)
+    force = PairForce(load, slope, 0.0, 0.0, load, slope, 0.0, 0.0, 0.0, limit, limit_by_gap, 0.0)
+    return both_forces(force, _along_path(m, t, y, pair)) if m.scene.curvature_force != 0 else force
+
+
+@compiled(inline=True)
+def _force(m: Model, t: float, y: Floats, pair: PairState, settling: bool, value: PairForce) -> PairForce:
+    return both_forces(value, _of_pair(m, t, y, pair, settling))
 
 
 @compiled
@@ -100,7 +95,7 @@ def _along_path(m: Model, t: float, y: Floats, pair: PairState) -> PairForce:
     return of_path(-(bodies * stretch + along), -by_gap, -(bodies * bend + by_place))
 
 
-@compiled
+@compiled_once(ELASTIC_PART)
 def _power(
     m: Model, t: float, y: Floats, k: int, gap: float, w_rate: float, value: tuple[float, float]
 ) -> tuple[float, float]:
@@ -114,7 +109,7 @@ def _power(
     return value[0] + power, value[1] + rate
 
 
-@compiled
+@compiled_once(ELASTIC_PART)
 def _joining(m: Model, k: int, y: Floats, gap: float, value: tuple[Shares, Shares]) -> tuple[Shares, Shares]:
     """Add the losses, with slopes as those of a rigid contact in proportion."""
     losses = nodes_losses(m, k, y, gap)
@@ -133,7 +128,7 @@ def _loss(m: Model, gap: float, material: int, loss: float) -> tuple[float, floa
     return loss, (loss * slope / number if number > 0.0 else 0.0)
 
 
-@compiled
+@compiled_once(ELASTIC_PART)
 def _energy(m: Model, y: Floats, pair: PairState, value: tuple[float, float]) -> tuple[float, float]:
     k, gap, length = pair.k, pair.gap, contact_length(m, pair.place)
     shares = shares_of(m, pair.coast, pair.number, pair.place)

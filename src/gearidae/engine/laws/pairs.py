@@ -17,6 +17,7 @@ elastic bodies store besides, B per length, adds :math:`-B\,d\ell/dx_2`.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any, Final
 
 from gearidae.compiled import compiled, compiled_once
@@ -39,7 +40,7 @@ from gearidae.engine.pairs.tooth_pairs import (
 )
 from gearidae.engine.population.contact_point import state_of_pair
 from gearidae.formulas.quadrature import Ends
-from gearidae.laws.law import Verb, in_turn
+from gearidae.laws.law import Verb
 from gearidae.laws.pair_law import PairForce, PairLaw, in_reach
 from gearidae.laws.pairs import MESH_LAWS
 
@@ -54,34 +55,43 @@ def laws_of_mesh(scene: Record) -> int:
     return sum(1 << k for k, law in enumerate(PAIR_LAWS) if law.acts(scene))
 
 
-def _where_it_acts(law: PairLaw, verb: Verb) -> Verb:
-    """Verb of a law that is asked of meshes that have the law only."""
+def _asked(law: PairLaw, verb: Verb, rest: Verb) -> Verb:
+    """Verb of a law that is asked of meshes that have the law only, before the verbs of the laws behind it."""
     bit = 1 << PAIR_LAWS.index(law)
 
+    # one closure a law, the first law outermost: what is inside is compiled into each closure around it
     @compiled(inline=True)
     def ask(*arguments: Any) -> Any:
         value = arguments[-1]
         if arguments[0].scene.pair_laws & bit != 0:
             value = verb(*arguments)
-        return value
+        return rest(*arguments[:-1], value)
 
     return ask
 
 
-def _sum(name: str) -> Any:
-    """Sum over the verbs of one name."""
-    verbs = ((law, getattr(law, name)) for law in PAIR_LAWS)
-    return in_turn(tuple(_where_it_acts(law, verb) for law, verb in verbs if verb is not None))
+@compiled(inline=True)
+def _no_more(*arguments: Any) -> Any:
+    return arguments[-1]
 
 
-_force = _sum("force")
-_energy = _sum("energy")
-_joining = _sum("joining")
-_in_contact = _sum("in_contact")
-_power = _sum("power")
-mesh_force = _sum("mesh_force")
+def _sum(verbs: Iterable[Verb | None]) -> Any:
+    """Make one function of a verb of each law, in the order of the list."""
+    total: Verb = _no_more
+    for law, verb in reversed(list(zip(PAIR_LAWS, verbs, strict=True))):
+        if verb is not None:
+            total = _asked(law, verb, total)
+    return total
+
+
+_force = _sum(law.force for law in PAIR_LAWS)
+_energy = _sum(law.energy for law in PAIR_LAWS)
+_joining = _sum(law.joining for law in PAIR_LAWS)
+_in_contact = _sum(law.in_contact for law in PAIR_LAWS)
+_power = _sum(law.power for law in PAIR_LAWS)
+mesh_force = _sum(law.mesh_force for law in PAIR_LAWS)
 """Add the force on a mesh by the rate of the transmission error alone: (m, rate, value) -> value."""
-mesh_by_rate = _sum("mesh_by_rate")
+mesh_by_rate = _sum(law.mesh_by_rate for law in PAIR_LAWS)
 """Add the slope of that: (m, value) -> value."""
 
 
@@ -133,7 +143,7 @@ def stored_energy(m: Model, y: Floats) -> tuple[float, float]:
     return stored, pending
 
 
-@compiled
+@compiled_once(SOLVER)
 def radius_power(m: Model, t: float, y: Floats, w_rate: float) -> tuple[float, float]:
     """Power of the changing radius, what length adds to a pair's energy times the length's rate, and its own rate."""
     power = rate = 0.0
@@ -192,7 +202,7 @@ def _booking(law: PairLaw) -> Verb:
 
 LOSING: Final = sum(1 << k for k, law in enumerate(PAIR_LAWS) if law.losses)
 """Of `pair_laws`: those with a loss."""
-_losses = in_turn(tuple(_where_it_acts(law, _booking(law)) for law in PAIR_LAWS if law.losses))
+_losses = _sum(_booking(law) if law.losses else None for law in PAIR_LAWS)
 
 
 @compiled_once(SOLVER)

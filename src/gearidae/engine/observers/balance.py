@@ -196,7 +196,7 @@ def finish(m: Model, t: float, y: Floats, yp: Floats) -> None:
     _accumulate(m, t, y, yp, True)
 
 
-@compiled_once(SOLVER)
+@compiled(inline=True)
 def _sample_radius_power(m: Model, t: float, y: Floats) -> None:
     """Look at the power of the changing radius and at its rate."""
     q = m.work.quadrature

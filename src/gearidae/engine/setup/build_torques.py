@@ -80,21 +80,7 @@ def add_torques(s: Record, tables: Tables, scene: GearScene, begin: float) -> No
         waves.append(np.array(pack_harmonics(harmonics, tau, unit)))
         orders = [(h.amplitude / unit, h.order, h.phase) for h in law.harmonic if h.order is not None]
         torque.constant = law.torque / unit
-        for of_shaft in SHAFT_LAWS:
-            for constant in of_shaft.coefficients:
-                of_gears = constant.key is not None
-                value = (
-                    number_of(scene, shaft, constant.name) if of_gears else getattr(law, constant.name, 0.0)
-                )
-                torque[constant.name] = constant.scaled(value, radius, float(s.length_unit) / tau, force)
-            if has_law(scene, shaft, of_shaft):
-                s.guarded |= int(of_shaft.guard is not None)
-                torque.takes_angle |= int(of_shaft.by_angle is not None)
-        torque.acts = sum(
-            1 << k
-            for k, of_shaft in enumerate(ACTING)
-            if any(torque[constant.name] != 0.0 for constant in of_shaft.coefficients)
-        )
+        _add_coefficients(s, scene, shaft, law, radius)
         torque.harmonic_count, torque.harmonics_at = len(harmonics), tables.add(waves[-1])
         torque.law_torque, torque.law_speed = unit, float(s.length_unit) / tau / radius
         torque.order_count, torque.orders_at = len(orders), tables.add([x for term in orders for x in term])
@@ -135,6 +121,22 @@ def add_torques(s: Record, tables: Tables, scene: GearScene, begin: float) -> No
     knows_motion = laws or s.torque["speed_gain"].any() or s.torque["takes_angle"].any()
     s.quadrature_steps = 1 if knows_motion else QUADRATURE_STEPS
     s.quadrature_time = 1.0 / (1.0 / QUADRATURE_TIME + 4.0 * math.pi * fastest * tau)
+
+
+def _add_coefficients(s: Record, scene: GearScene, shaft: int, table: Drive | Load, radius: float) -> None:
+    """Set the coefficients of the laws of a shaft from the tables of gears, drive and load, and which laws act."""
+    torque, speed, force = s.torque[shaft], float(s.length_unit) / float(s.time_unit), float(s.force_unit)
+    for law in SHAFT_LAWS:
+        for constant in law.coefficients:
+            of_gears = constant.key is not None
+            value = number_of(scene, shaft, constant.name) if of_gears else getattr(table, constant.name, 0.0)
+            torque[constant.name] = constant.scaled(value, radius, speed, force)
+        if has_law(scene, shaft, law):
+            s.guarded |= int(law.guard is not None)
+            torque.takes_angle |= int(law.by_angle is not None)
+    for k, law in enumerate(ACTING):
+        if any(torque[constant.name] != 0.0 for constant in law.coefficients):
+            torque.acts |= 1 << k
 
 
 def _set_looks(s: Record, waves: list[Floats], scene: GearScene) -> None:
