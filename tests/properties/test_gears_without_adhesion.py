@@ -40,6 +40,22 @@ CASES = {
         "initial.gap": 1.5e-8,
         "run.duration": 3e-5,
     },
+    "orbit of the pinion, on both flanks": {
+        "drive.law": {
+            "name": "microengine",
+            "radius": 1e-5,
+            "force": 4e-7,
+            "phase": 0.3,
+            "frequency": 4e4,
+        },
+        "drive.orientation": 0.7,
+        "gears.pinion_hub_clearance": 6e-8,
+        "mesh.backlash": 7e-8,
+        "mesh.damping": 2e-6,
+        "mesh.film_damping": 2e-6,
+        "mesh.film_gap": 2e-8,
+        "initial.gap": 2e-8,
+    },
     "mesh damping": {"mesh.damping": 5e-6},
     "films of gas": {"mesh.film_damping": 2e-4, "mesh.film_gap": 1e-9},
     "load harmonics": {

@@ -117,7 +117,9 @@ def _law(rng, scene):
     if kind == "microengine":
         engine = {"name": kind, "radius": 1e-5, "force": torque / 1e-5, "phase": -0.9}
         frequency = turned / (2.0 * math.pi)
+        clearance = 0.1 * scene.mesh.backlash if rng.random() < 0.5 else 0.0
         return {
+            "gears.pinion_hub_clearance": clearance,
             "drive.law": engine | {"frequency": frequency},
             "drive.pin_radius": 1.25e-6,
             "drive.pin_friction": 0.3,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 import gearidae as gd
@@ -80,6 +82,17 @@ CHANGES = {
     "runout": {
         "mesh.pinion_runout": {"amplitude": 2e-8, "phase": 0.5},
         "mesh.gear_runout": {"amplitude": 6e-8, "phase": -1.0},
+    },
+    "orbit": {
+        "drive.law": {
+            "name": "microengine",
+            "radius": 1e-5,
+            "force": 4e-7,
+            "phase": math.pi / 6.0,  # so that the units of both halves are the same
+            "frequency": 2e5,
+        },
+        "drive.orientation": 0.4,
+        "gears.pinion_hub_clearance": 2e-8,
     },
     **{
         law.name: {f"mesh.{constant.name}": constant.key.example for constant in law.constants}

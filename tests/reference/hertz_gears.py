@@ -2,8 +2,8 @@
 
 Independent of the engine's states and scaling: Newton's law for each shaft in phi1 and phi2, the gaps from Teodorescu
 et al. 2009, Eqs. 4-6, the flanks' force interpolated from the readable line force. Static error, runout and listed
-errors of single teeth, mesh damping, torque and load harmonics; the gear must keep turning forward (dry resistance is
-not set-valued here).
+errors of single teeth, a pinion whose centre is moved in its hub along and across the centres, mesh damping, torque and
+load harmonics, a torque law of the drive; the gear must keep turning forward (dry resistance is not set-valued here).
 """
 
 import math
@@ -15,6 +15,7 @@ from scipy.optimize import brentq
 
 from gearidae.contact.line import line_force
 from gearidae.mesh import curvature_radii, separation
+from gearidae.torques import torque_law
 
 
 class HertzGears:
@@ -35,9 +36,12 @@ class HertzGears:
         ratio = self.geometry.contact_ratio
         there = np.arange(math.ceil(start.mesh_phase - ratio), math.floor(start.mesh_phase) + 1)
         u = 0.5 * scene.mesh.backlash + relief + self.errors(there, 0).min() - start.gap
+        self.first = 0.0  # the angle from which the drive's law counts
+        u -= self.nearer(0.0)[0]
         pinion = brentq(
             lambda a: r1 * a - r2 * angle - self.error(a, angle)[0] - u, -10.0, 10.0, xtol=1e-16, rtol=1e-15
         )
+        self.first = pinion
         _, slope, gear_slope = self.error(pinion, angle)
         speed = (r2 + gear_slope) * start.gear_speed / (r1 - slope)
         self.start = np.array([pinion, angle, speed, start.gear_speed])
@@ -65,6 +69,28 @@ class HertzGears:
             gear_slope -= mesh.gear_runout.amplitude * math.sin(gear + mesh.gear_runout.phase)
         return e, slope, gear_slope
 
+    def law(self, t, angle, speed):
+        """Torque [N m] of the drive's law, and its force [N] along and across the centres."""
+        drive = self.scene.drive
+        if drive.law is None:
+            return 0.0, 0.0, 0.0
+        numbers = np.array(drive.law.numbers())
+        torque, x, y = torque_law(drive.law.name).function(t, angle - self.first, speed, numbers)
+        c, s = math.cos(drive.orientation), math.sin(drive.orientation)
+        return torque, c * x - s * y, s * x + c * y
+
+    def nearer(self, t):
+        """By how much a pinion that is pushed in its hub is nearer along the lines of action of both flanks [m]."""
+        clearance, alpha = self.scene.gears.pinion_hub_clearance, self.geometry.pressure_angle
+        if clearance == 0.0:
+            return np.zeros(2)
+        _, x, y = self.law(t, 0.0, 0.0)
+        x, y = clearance * x / math.hypot(x, y), clearance * y / math.hypot(x, y)
+        # along the centres are the teeth of the gear; a drive flank pushes it across them, a coast flank back
+        return np.array(
+            [x * math.sin(alpha) + y * math.cos(alpha), x * math.sin(alpha) - y * math.cos(alpha)]
+        )
+
     def film(self, gaps):
         """Damping of the films [N s/m]."""
         mesh = self.scene.mesh
@@ -78,9 +104,11 @@ class HertzGears:
         pinion, gear, w1, w2 = y
         r1, r2, pitch = geometry.base_radius_pinion, geometry.base_radius_gear, geometry.base_pitch
         e, slope, gear_slope = self.error(pinion, gear)
-        u, arm = r1 * pinion - r2 * gear - e, r2 + gear_slope
-        u_rate = (r1 - slope) * w1 - arm * w2
-        along_line = scene.mesh.damping * u_rate
+        arm, span = r2 + gear_slope, 1e-6 * scene.run.duration
+        before = max(t - 0.5 * span, 0.0)
+        nearer, closing = self.nearer(t), (self.nearer(before + span) - self.nearer(before)) / span
+        lead, lead_rate = r1 * pinion - r2 * gear - e, (r1 - slope) * w1 - arm * w2
+        along_line = scene.mesh.damping * (lead_rate + closing[0])
         on_gear = arm * along_line
         first = math.floor(r2 * gear / pitch)
         numbers = np.arange(first - 4, first + 5)
@@ -88,12 +116,18 @@ class HertzGears:
         coast = 2.0 * geometry.approach - (r2 * gear - (numbers + 0.5) * pitch)
         for sign, back, xi in ((1.0, 0, drive), (-1.0, 1, coast)):
             opened, steepness = separation(geometry, xi, scene.mesh.tip_relief_radius)
-            gaps = 0.5 * scene.mesh.backlash - sign * u + opened + self.errors(numbers, back)
+            gaps = (
+                0.5 * scene.mesh.backlash - sign * lead - nearer[back] + opened + self.errors(numbers, back)
+            )
             near = gaps < self.far
             if near.any():
                 radius = curvature_radii(geometry, xi[near])[2]
                 load = sign * np.sqrt(radius) * np.exp(self.log_force(np.maximum(gaps[near], self.deepest)))
-                load -= sign * self.film(gaps[near]) * (sign * r2 * w2 * steepness[near] - sign * u_rate)
+                load -= (
+                    sign
+                    * self.film(gaps[near])
+                    * (sign * (r2 * w2 * steepness[near] - lead_rate) - closing[back])
+                )
                 along_line += load.sum()
                 on_gear += (load * (arm + r2 * steepness[near])).sum()
         torques = []
@@ -105,7 +139,8 @@ class HertzGears:
             [
                 w1,
                 w2,
-                (torques[0] - (r1 - slope) * along_line) / scene.gears.pinion_inertia,
+                (torques[0] + self.law(t, pinion, w1)[0] - (r1 - slope) * along_line)
+                / scene.gears.pinion_inertia,
                 (on_gear - resistance) / scene.gears.gear_inertia,
             ]
         )
@@ -131,4 +166,5 @@ class HertzGears:
         assert run.success
         pinion, gear, w1, w2 = run.y
         e = np.array([self.error(a, b)[0] for a, b in zip(pinion, gear, strict=True)])
-        return np.array([r1 * pinion - self.geometry.base_radius_gear * gear - e, w1, w2])
+        nearer = np.array([self.nearer(t)[0] for t in times])
+        return np.array([r1 * pinion - self.geometry.base_radius_gear * gear - e + nearer, w1, w2])

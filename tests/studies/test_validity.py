@@ -278,6 +278,21 @@ def test_errors_of_teeth_are_compared_with_what_the_load_closes():
     assert inside.holds["tooth_errors"]
 
 
+def test_the_journal_must_follow_the_force_of_the_drive():
+    engine = gd.load_case("cases/microengine.toml")
+    assert "journal" not in gd.studies.validity(engine).index
+    loose = engine.replace({"gears.pinion_hub_clearance": "0.5 um"})
+    rows = gd.studies.validity(loose)
+    # 600 Hz at the end of the ramp, beside a disc of the pinion's inertia on 10 uN over 0.5 um
+    assert rows.number["journal"] == pytest.approx(2.0 * math.pi * 600.0, rel=1e-6)
+    mass = 2.0 * 9.6e-21 / (34.715e-6 / math.cos(math.radians(20.0))) ** 2
+    assert rows.bound["journal"] == pytest.approx(math.sqrt(10e-6 / (mass * 0.5e-6)) / 3.0, rel=1e-9)
+    assert rows.holds["journal"]
+    assert "swings by up to 1.44 %" in rows.verdict["journal"]
+    fast = loose.replace({"drive.law.frequency": "200 kHz"})
+    assert not gd.studies.validity(fast).holds["journal"]
+
+
 def test_a_pair_s_force_falls_e_fold_over_the_closure_of_the_load():
     rest = rest_of(HIGH)
     closure = gd.studies.validity(HIGH).bound["tooth_errors"]

@@ -14,6 +14,7 @@ from gearidae.engine.model.state import EMPTY, MATERIALS, Floats, Model, assign
 from gearidae.engine.motion.static_solve import SETTLED, settle_nodes
 from gearidae.engine.observers.balance import carry_balance
 from gearidae.engine.observers.exposures.bins import exposure_table
+from gearidae.engine.pairs.orbit import follow_orbit
 from gearidae.engine.setup.problem import Problem
 
 _ROUNDS = 20  # each brings the deflections ten times nearer to those of what is joined, or more
@@ -48,6 +49,8 @@ def _handed_over(source: Model, state: Floats, new: Problem, time: float, y: Flo
     """Checkpoint of the new problem: held friction is decided on anew, and the change of the stored energy booked."""
     if new.model.scene.friction.rubs != 0:
         settle_start(new.model, time, y, False)
+    for model in (source, new.model):
+        follow_orbit(model, time)
     carry_balance(source, state, new.model, y)
     return new.checkpoint(time, y)
 

@@ -96,6 +96,7 @@ from gearidae.engine.observers.exposures.contacts import add_asperity_switches
 from gearidae.engine.observers.extremes import follow as extremes
 from gearidae.engine.observers.finish import finish_account
 from gearidae.engine.observers.passages import PASSAGES_AT_ONCE, write_passages
+from gearidae.engine.pairs.orbit import follow_orbit, orbit_anew
 from gearidae.engine.pairs.tooth_pairs import flank_of_history, in_flight, list_known
 from gearidae.engine.sundials import names as sun
 from gearidae.engine.sundials.ida_memory import IDA, YP, Y
@@ -636,6 +637,8 @@ def prepare_start(m: Model, t: float, y: Floats, yp: Floats) -> None:
     """Set sides of laws, consistent rates, and what observers know of the time before, for a start at t."""
     driver, follow = m.work.driver, m.scene.follow
     set_law_window(m)
+    orbit_anew(m)
+    follow_orbit(m, t)
     if m.scene.law_switches != 0:
         set_law_sides(m, t, y)
     if m.scene.friction.ages != 0:

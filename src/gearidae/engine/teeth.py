@@ -20,6 +20,7 @@ from gearidae.engine.elastic.rows import JOINED, SHARE, first_unknown, row_of
 from gearidae.engine.entry_points import observe_at
 from gearidae.engine.model.state import PHASE, Model, U, V, W, assign, copied
 from gearidae.engine.motion.pair_forces import force_of_one
+from gearidae.engine.pairs.orbit import orbit_anew
 from gearidae.engine.pairs.tooth_pairs import all_pairs, history_of, pair_at, pair_gap
 from gearidae.engine.population.contact_point import spot_at, state_of_pair
 from gearidae.engine.population.layout import (
@@ -121,6 +122,7 @@ class _Reader:
         assign(m.work, before[1])
         if before[2] is not None:
             m.rows[:] = before[2]
+        orbit_anew(m)
 
     def _time(self, sample: int) -> float:
         run = self._scene.run

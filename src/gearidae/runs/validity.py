@@ -38,6 +38,7 @@ from gearidae.runs.train_statics import stages
 from gearidae.runs.yielding import yielding_row
 from gearidae.scene import TrainScene
 from gearidae.scene.gears import disc_inertia
+from gearidae.scene.orbit import has_orbit, journal_speeds
 from gearidae.scene.pitch_errors import has_pitch_errors, rms_of_sums
 from gearidae.scene.prefixes import with_prefix
 from gearidae.scene.validity_row import EXPECTED_ASPERITIES, ValidityRow, rows_to_json
@@ -63,6 +64,9 @@ _LITTLE_ATTRACTION: Final = 0.1
 """Share of the force that presses below which the attraction may be left out."""
 _USUAL_ERROR: Final = 10e-9
 """Error of two teeth that meet [m], in a scene without any: an assumption, as lithography places to 5 to 100 nm."""
+_SLOWER: Final = 3.0
+"""Times by which the force in a hub turns more slowly than the journal would by itself: the centre then stands within
+a ninth of where a slow force holds it."""
 _NO_LOAD = "no mean torque of the drive presses the teeth together: there is no resting contact"
 
 
@@ -153,7 +157,7 @@ def _rows(scene: GearScene) -> tuple[ValidityRow, ...]:
             _attraction(scene, rest, behind, "attraction_behind", "attraction across the backlash behind")
         ]
         rows += [_memory(scene, rest), _tooth_errors(scene, rest, stiffness), _disc_drag(scene)]
-        rows += [*_inertia(scene), *locking_rows(scene)]
+        rows += [*_inertia(scene), *locking_rows(scene), *_journal(scene)]
     return tuple(rows)
 
 
@@ -429,6 +433,24 @@ def _tooth_errors(scene: GearScene, rest: Rest, stiffness: float) -> ValidityRow
     quantity = "rms error of two teeth that meet"
     number = math.nan if math.isnan(closure) else error
     return _row("tooth_errors", quantity, number, "m", limit, closure, inside or small, verdict)
+
+
+def _journal(scene: GearScene) -> Iterator[ValidityRow]:
+    """Compare the turning force of a drive with the natural speed of the journal that is to follow it."""
+    if not has_orbit(scene):
+        return
+    (own, turns), clearance = journal_speeds(scene), scene.gears.pinion_hub_clearance
+    bound = own / _SLOWER
+    swing = 100.0 * clearance / scene.geometry.base_radius_pinion
+    if turns <= bound:
+        verdict = (
+            f"the journal follows the force; the speed of the gear swings by up to {swing:.3g} % once a turn"
+        )
+    else:
+        verdict = "the journal does not follow the force: its centre lags behind or overshoots"
+    limit = f"{with_prefix(bound, 'rad/s')}, a third of the journal's own, sqrt(P/(m c))"
+    quantity = "turning of the force in the hub"
+    yield _row("journal", quantity, turns, "rad/s", limit, bound, turns <= bound, verdict)
 
 
 def _disc_drag(scene: GearScene) -> ValidityRow:

@@ -18,6 +18,7 @@ from gearidae.laws.shafts import SHAFT_LAWS, has_law
 from gearidae.scene.friction import has_flank_friction
 from gearidae.scene.joints import joints
 from gearidae.scene.keys import scene_value
+from gearidae.scene.orbit import has_orbit
 from gearidae.scene.pitch_errors import has_pitch_errors
 
 if TYPE_CHECKING:
@@ -88,6 +89,7 @@ FEATURES: Final = {
         "mesh.gear_runout",
         lambda scene: scene.mesh is not None and bool(scene.mesh.pinion_runout or scene.mesh.gear_runout),
     ),
+    "orbit": Feature("gears.pinion_hub_clearance", has_orbit),
     **{
         law.name: Feature(f"mesh.{law.constants[0].name}", partial(has_mesh_law, law=law))
         for law in MESH_LAWS

@@ -105,6 +105,12 @@ class PairOfGears(Group):
     gear_hub_radius: HubRadius = Field(
         default=0.0, description="radius of the gear's hub, 0 for one without friction"
     )
+    pinion_hub_clearance: Annotated[
+        float, Quantity(unit="m", at_least=0, at_most=1e-3, least=1e-12, shown=("nm", -9))
+    ] = Field(
+        default=0.0,
+        description="radial clearance of the pinion's hub, in which the force of the drive carries its centre round",
+    )
     pinion_hub_adhesion: JointForce = Field(
         default=0.0, description="adhesion of the pinion's hub, which its friction takes for a load"
     )

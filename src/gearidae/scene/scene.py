@@ -25,6 +25,7 @@ from gearidae.scene.limits import (
     check_thickness,
 )
 from gearidae.scene.named_tables import NAME, NamedTables
+from gearidae.scene.orbit import check_orbit, play_at_start
 from gearidae.scene.pitch_errors import check_pitch_errors, error_on_path
 from gearidae.scene.roughnesses import InRoughnesses
 from gearidae.scene.run import Initial, Roller, Run
@@ -375,6 +376,7 @@ class GearScene(Scene):
         self._check_errors()
         overlap = _DEEPEST_OVERLAP * self.surface.roughness
         room = mesh.backlash + sum(error_on_path(self, coast=coast) for coast in (False, True))
+        room += play_at_start(self)
         most = room + overlap
         if not -overlap <= self.initial.gap <= most:
             raise SceneError(
@@ -415,6 +417,7 @@ class GearScene(Scene):
                 " pinion's runout",
             )
         check_pitch_errors(self)
+        check_orbit(self)
 
 
 def _shafts(scene: Scene) -> NamedTables[Shaft]:

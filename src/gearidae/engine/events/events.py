@@ -20,6 +20,7 @@ from gearidae.engine.events.pair_events import pair_guard
 from gearidae.engine.events.sliding import REVERSALS_HIGH, dry_guard
 from gearidae.engine.events.stops import stop_guard
 from gearidae.engine.model.state import COAST, DRIVE, Floats, Model
+from gearidae.engine.pairs.orbit import follow_orbit
 from gearidae.engine.pairs.tooth_pairs import (
     flank_of_history,
     gap_and_rate,
@@ -47,6 +48,7 @@ def guard(m: Model, t: float, y: Floats) -> float:
     mesh, the dry resistance, a flank coming near) is positive while it waits, so that the least of them waits for
     them all. What has happened is disarmed where it is dealt with, and the next in the same step is found in its turn.
     """
+    follow_orbit(m, t)
     least = mark_guard(m, y)
     if m.scene.stop != 0:
         least = min(least, stop_guard(m, t, y))

@@ -13,6 +13,7 @@ from gearidae.engine.events.mesh_marks import set_marks
 from gearidae.engine.events.sliding import begin_sliding
 from gearidae.engine.laws.statistical import set_joined
 from gearidae.engine.model.state import EMPTY, MATERIALS, PHASE, Floats, Model
+from gearidae.engine.pairs.orbit import follow_orbit
 from gearidae.engine.pairs.tooth_pairs import (
     gap_and_rate,
     history_of,
@@ -28,6 +29,7 @@ from gearidae.laws.pair_law import in_reach
 def accept(m: Model, t: float, y: Floats) -> None:
     """Follow the histories to an accepted time; beyond the cut-off nothing is joined and nothing is remembered."""
     m.state.time = t
+    follow_orbit(m, t)
     for coast in range(2):
         if in_reach(m, nearest_gap(m, coast, y)):
             m.state.flank_in_reach[coast] = 1

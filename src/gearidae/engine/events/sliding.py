@@ -31,6 +31,7 @@ from gearidae.engine.model.record_types import (
 from gearidae.engine.model.state import Floats, Model, Record, V, W
 from gearidae.engine.motion.shafts import forces_at_shafts
 from gearidae.engine.pairs.mesh_error import pinion_speed, rate_of
+from gearidae.engine.pairs.orbit import follow_orbit
 
 STILL: Final = 1e-10
 """Speed over sigma/tau by which sliding reverses before that counts, so that an element just let go waits for it."""
@@ -227,7 +228,9 @@ def stop_creeping(m: Model, t: float, y: Floats) -> bool:
     """
     slow = max(AT_ONCE, 1.0 / m.rows[m.scene.error_weights_at + V])
     fastest = max(abs(pinion_speed(m, y)[0]), abs(y[W]))
-    if m.state.hold == AT_REST or fastest > slow or not (_rests(m, t, y) and _rests(m, t + A_WHILE, y)):
+    stays = m.state.hold != AT_REST and fastest <= slow and _rests(m, t, y) and _rests(m, t + A_WHILE, y)
+    follow_orbit(m, t)
+    if not stays:
         return False
     _decide_at_rest(m, t, y)
     return True
@@ -322,7 +325,7 @@ def _sliding_rate(m: Model, history: int, turn: float, w: float, shafts: Shafts)
 def _rests(m: Model, t: float, y: Floats) -> bool:
     """Whether gears that hardly move would be held where they are: bringing to rest what is not would not end."""
     v, w = y[V], y[W]
-    y[V] = y[W] = 0.0
+    y[V], y[W] = rate_of(pinion_speed(m, y)[1], 0.0, 0.0), 0.0
     _, pinion, gear = forces_at_shafts(m, t, y)
     list_elements(m, t, y)
     y[V], y[W] = v, w
@@ -334,7 +337,7 @@ def _decide_at_rest(m: Model, t: float, y: Floats) -> None:
     """Decide on all elements at once, where both gears stand still."""
     state, work = m.state, m.work.friction
     state.reversals += 1
-    y[W] = y[V] = 0.0
+    y[V], y[W] = rate_of(pinion_speed(m, y)[1], 0.0, 0.0), 0.0
     _, pinion, gear = forces_at_shafts(m, t, y)
     list_elements(m, t, y)
     if rest_margin(m, pinion, gear) >= -NO_FORCE:

@@ -33,6 +33,7 @@ from gearidae.engine.pairs.coverage import (
     weighed,
 )
 from gearidae.engine.pairs.lengths import length_and_rates, slopes_along_path, weighed_length
+from gearidae.engine.pairs.orbit import opening_of
 from gearidae.engine.pairs.tooth_pairs import PairState, contact_length, flank_of_history, is_on_path
 from gearidae.laws.pair_law import NO_PAIR_FORCE, PairForce, PairLaw, both_forces, of_path
 
@@ -100,7 +101,7 @@ def _power(
     m: Model, t: float, y: Floats, k: int, gap: float, w_rate: float, value: tuple[float, float]
 ) -> tuple[float, float]:
     coast, number = flank_of_history(m, k), m.state.history[k].pair
-    opening = -(1.0 - 2.0 * coast) * y[V]
+    opening = opening_of(m, coast, y[V])
     length, stretch, bend = length_and_rates(m, coast, number, y[PHASE], y[W], w_rate)
     bodies, change, energies, slopes = _by_length(m, t, y, k, number, gap, opening, length)
     energy = weighed_length(m, (coast, number, y[PHASE]), y[W], w_rate, energies, slopes)

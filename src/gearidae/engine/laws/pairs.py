@@ -28,6 +28,7 @@ from gearidae.engine.laws.elastic import ELASTIC
 from gearidae.engine.laws.statistical import STATISTICAL
 from gearidae.engine.model.state import PHASE, Floats, Model, Record, U, V, W
 from gearidae.engine.pairs.coverage import NONE, Shares
+from gearidae.engine.pairs.orbit import follow_orbit
 from gearidae.engine.pairs.tooth_pairs import (
     PairState,
     flank_of_history,
@@ -190,7 +191,9 @@ def _booking(law: PairLaw) -> Verb:
         now = y[U], y[V], y[PHASE], y[W]
         for i in range(reach.total):
             coast, number = pair_at(reach, i)
+            follow_orbit(m, r.time)
             start = pair_motion(m, coast, number, before, r.mesh_acceleration, r.gear_acceleration)
+            follow_orbit(m, r.time + h)
             end = pair_motion(m, coast, number, now, yp[V], yp[W])
             taken = of_pair(m, h, start, end, taken)
         m.state.energy[name] += taken[0]

@@ -150,7 +150,9 @@ SCENE: Final = record_type(
     ("pinion_teeth", REAL),  # [1]
     ("pinion_inverse_mass", REAL),  # R1^2 tau^2 F / (I1 sigma): acceleration per force; 1 of a roller [1]
     ("gear_inverse_mass", REAL),  # R2^2 tau^2 F / (I2 sigma); 0 where the gear is held [1]
-    ("clearance", REAL, (2,)),  # gap on the path at u = 0 by flank; infinite where it meets none [sigma]
+    # gap on the path at u = 0 by flank; infinite where it meets none [sigma]; with an orbit of the pinion that of the
+    # coast flank is the one of the time that is looked at
+    ("clearance", REAL, (2,)),
     ("phase_rate", REAL),  # sigma / pb: rate of the phase per surface velocity of the gear [1]
     ("contact_ratio", REAL),  # path of contact [pb]
     ("coast_phase", REAL),  # 2 approach / pb + 1/2: mirrors the coast flank about the pitch point [pb]
@@ -262,4 +264,12 @@ SCENE: Final = record_type(
     ("has_error", INT),  # 1 if the mesh has an error of the angles: static error or runout
     ("gear_runout", REAL),  # amplitude of the gear's runout [sigma]
     ("gear_runout_phase", REAL),  # its phase [rad]
+    ("orbit", REAL),  # clearance of the pinion's hub; 0 for a pinion that does not orbit [sigma]
+    ("orbit_play", REAL),  # twice the clearance times the sine of the pressure angle [sigma]
+    ("orbit_sine", REAL),  # components of the line of action in the axes of the drive's force [1]
+    ("orbit_cosine", REAL),  # [1]
+    ("orbit_x", REAL),  # and of the line of the centres [1]
+    ("orbit_y", REAL),  # [1]
+    ("orbit_nearest", REAL),  # gap of the coast teeth that stand out farthest, less the clearance [sigma]
+    ("orbit_step", REAL),  # between two values of the direction of the force, at most [tau]
 )

@@ -188,6 +188,7 @@ NOTED: Final = record_type(  # a pair where its force was evaluated
     ("limit_slope", REAL),  # in the gap [F/sigma]
     ("limit_rate", REAL),  # [F/tau]
     ("force_rate", REAL),  # [F/tau]
+    ("damping", REAL),  # slope of the force in the gap's rate [F tau/sigma]
 )
 
 NOTES: Final = record_type(  # the last evaluation of all forces
@@ -280,6 +281,21 @@ PITCH_ERROR: Final = record_type(  # of the teeth of a pair, as last looked up
     ("value", REAL),  # [sigma]
 )
 
+ORBIT: Final = record_type(  # of the pinion in its hub, at the time that is looked at
+    ("time", REAL),  # [tau]
+    ("error", REAL),  # what it adds to the error of the mesh [sigma]
+    ("error_rate", REAL),  # [sigma/tau]
+    ("error_bend", REAL),  # [sigma/tau^2]
+    ("play_rate", REAL),  # rate of what it adds to the gap of the coast flank besides u [sigma/tau]
+    ("play_bend", REAL),  # [sigma/tau^2]
+    ("origin", REAL),  # of the values that a polynomial goes through [tau]
+    ("step", REAL),  # between them; 0 before there are any [tau]
+    ("value", REAL, (2, 6)),  # their divided differences: of the error and of the coast gap [sigma]
+    ("work_time", REAL),  # to which the work of the moving centre is booked [tau]
+    ("power", REAL),  # of that, then [F sigma/tau]
+    ("power_rate", REAL),  # [F sigma/tau^2]
+)
+
 WORK: Final = record_type(
     ("quadrature", QUADRATURE),  # of the energy balance
     ("resistance", RESISTANCE),  # of the energy balance
@@ -316,4 +332,5 @@ WORK: Final = record_type(
     ("friction", FRICTION_WORK),  # of friction
     ("mesh_error", MESH_ERROR),  # of a mesh that has one
     ("pitch_error", PITCH_ERROR, (2 * SLOTS_HIGH,)),  # by history
+    ("orbit", ORBIT),  # of a pinion that has one
 )

@@ -18,6 +18,7 @@ from gearidae.engine.elastic.static_condensation import (
 from gearidae.engine.laws.pairs import force_of_pair
 from gearidae.engine.model.state import Floats, Model
 from gearidae.engine.pairs.coverage import note_shares, rubs_by_material
+from gearidae.engine.pairs.orbit import follow_orbit
 from gearidae.engine.pairs.pair_force import NO_MESH_FORCES, MeshForces, add_pair
 from gearidae.engine.pairs.tooth_pairs import (
     PairState,
@@ -47,6 +48,7 @@ def mesh_forces(m: Model, t: float, y: Floats, settling: bool) -> MeshForces:
         are those of the state, and the slopes are at fixed deflection.
     """
     total = NO_MESH_FORCES
+    follow_orbit(m, t)
     m.work.pair_forces.count = 0
     full = with_deflections(m, y) if m.scene.nodes > 0 and settling else y
     reach = pairs_felt(m, y)
@@ -70,6 +72,7 @@ def forces_at(m: Model, t: float, y: Floats) -> MeshForces:
 @compiled_once(SOLVER)
 def force_of_one(m: Model, t: float, y: Floats, coast: int, number: int) -> float:
     """Force of a single pair along the line of action by all laws of the scene, positive where its flanks push."""
+    follow_orbit(m, t)
     pair = state_of_pair(m, coast, number, y)
     return force_of_pair(m, t, y, pair, False).load if in_reach(m, pair.gap) else 0.0
 
@@ -138,6 +141,7 @@ def finish_deflections(m: Model, t: float, y: Floats) -> None:
 @compiled_once(SOLVER)
 def _ask_for_deflections(m: Model, t: float, y: Floats, kind: int) -> None:
     """Ask for the deflections of all pairs within reach, in one of the ways of `pair_deflections`."""
+    follow_orbit(m, t)
     for j in range(first_unknown(m, 0), y.size):  # those of pairs out of reach are zero
         y[j] = 0.0
     reach = pairs_touching(m, y)
@@ -158,7 +162,7 @@ def note_pair_force(m: Model, pair: PairState, f: PairForce) -> None:
     noted.history, noted.pair, noted.position = pair.k, pair.number, pair.place
     noted.gap, noted.gap_rate, noted.relief = pair.gap, pair.rate, pair.slope
     noted.force, noted.slope, noted.drift = f.load, f.by_gap, f.by_place * pair.place_rate
-    noted.contact, noted.contact_slope = f.contact, f.contact_by_gap
+    noted.contact, noted.contact_slope, noted.damping = f.contact, f.contact_by_gap, f.by_rate
     noted.limit, noted.limit_slope = f.limit, f.limit_by_gap
     noted.limit_rate = f.limit_by_place * pair.place_rate + f.limit_by_gap * pair.rate
     notes.count += 1

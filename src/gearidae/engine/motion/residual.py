@@ -3,12 +3,12 @@
 States of a gear pair, scaled (see `gearidae.engine.model.state`): u, its rate v, the gear's phase in pitches and its
 surface velocity w,
 
-    u' - v = 0,                  v' - (1 - e1) a1 (m1 - (1 - e1) F) + (1 + g1) w' + e2 w1^2 + g2 w^2 = 0,
+    u' - v = 0,                  v' - (1 - e1) a1 (m1 - (1 - e1) F) + (1 + g1) w' + e2 w1^2 + g2 w^2 + h'' = 0,
     phase' - (sigma/pb) w = 0,   w' - a2 ((1 + g1) F + Fs - m2) = 0,
 
-with w1 the surface velocity of the pinion and e1, e2, g1, g2 the derivatives of the mesh's error
-(`gearidae.engine.pairs.mesh_error`), F the sum of the pairs' forces along the line of action and Fs what tip relief
-adds at the gear (Teodorescu et al. 2009, Eqs. 1-6, with the tip relief doing work consistently) and, with
+with w1 the surface velocity of the pinion, e1, e2, g1, g2 and h'' the derivatives of the mesh's error in both angles
+and time (`gearidae.engine.pairs.mesh_error`), F the sum of the pairs' forces along the line of action and Fs what tip
+relief adds at the gear (Teodorescu et al. 2009, Eqs. 1-6, with the tip relief doing work consistently) and, with
 ``mesh.radius_force``, the changing radius. A gear held by dry resistance has w' = 0. A roller at the height z is a
 pinion that meets one flank of a gear that is held for good, u = -z and a2 = 0. An elastic contact adds the deflections
 at its nodes, which have no rates: the system is then a DAE of index 1.
@@ -41,7 +41,7 @@ def motion(m: Model, t: float, y: Floats, yp: Floats, out: Floats, settling: boo
     s = shafts_at(m, t, y, mesh)
     pinion, gear = accelerations(m, t, y, s)
     out[V] = yp[V] + (1.0 + s.error.gear) * yp[W] - (1.0 - s.error.pinion) * pinion
-    out[V] += s.error.pinion_bend * s.turn * s.turn + s.error.gear_bend * y[W] * y[W]
+    out[V] += s.error.pinion_bend * s.turn * s.turn + s.error.gear_bend * y[W] * y[W] + s.error.bend
     out[PHASE], out[W] = yp[PHASE] - m.scene.phase_rate * y[W], yp[W] - gear
     return mesh
 

@@ -17,6 +17,7 @@ from gearidae.engine.laws.pairs import joining_losses
 from gearidae.engine.model.state import PHASE, Floats, Model, V, W
 from gearidae.engine.pairs.coverage import NONE, Shares, path_position, shares_of, weighed
 from gearidae.engine.pairs.lengths import weighed_length
+from gearidae.engine.pairs.orbit import opening_of
 from gearidae.engine.pairs.tooth_pairs import (
     contact_length,
     flank_of_history,
@@ -108,7 +109,7 @@ def _follow_pairs(m: Model, span: float, y: Floats, w_rate: float) -> None:
         losses, slopes = joining_losses(m, k, y, gap)
         if losses[0] != 0.0 or losses[1] != 0.0 or losses[2] != 0.0:
             loss = weighed_length(m, (coast, h.pair, y[PHASE]), y[W], w_rate, losses, slopes)
-            power, rate = loss.rate, loss.bend - (1.0 - 2.0 * coast) * y[V] * loss.by_gap
+            power, rate = loss.rate, loss.bend + opening_of(m, coast, y[V]) * loss.by_gap
         h.lag += integral(span, h.lag_power, power, h.lag_rate, rate)
         h.lag_power, h.lag_rate = power, rate
 

@@ -42,7 +42,9 @@ from gearidae.engine.laws.pairs import LOSING, book_losses_of_mesh, radius_power
 from gearidae.engine.model.state import DRIVE, LOAD, MATERIALS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.kinetic import energy_of_speeds, kinetic_energy
 from gearidae.engine.observers.adhesion_loss import joining_lag
+from gearidae.engine.observers.orbit_work import begin_orbit, book_orbit
 from gearidae.engine.pairs.mesh_error import pinion_acceleration, speed_and_error
+from gearidae.engine.pairs.orbit import follow_orbit
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.pairs.tooth_pairs import (
     flank_of_history,
@@ -93,12 +95,15 @@ def carry_balance(old: Model, old_y: Floats, m: Model, y: Floats) -> None:
 def begin(m: Model, t: float, y: Floats, yp: Floats) -> None:
     """Begin a quadrature at a start, where speeds and torques may jump."""
     q = m.work.quadrature
+    follow_orbit(m, t)
     q.steps = 0
     q.length_work = 0.0
     q.time = t
     q.kinetic = kinetic_energy(m, y)
     q.gear_travel, q.gear_speed, q.gear_acceleration = y[PHASE] / m.scene.phase_rate, y[W], yp[W]
     _note_resistance(m, t, q.gear_travel, y, yp)
+    if m.scene.orbit != 0.0:
+        begin_orbit(m, t, y, yp)
     q.pinion_travel, q.pinion_speed, q.pinion_acceleration = _pinion(m, y, yp)
     q.drive, q.drive_rate = _torque(m, DRIVE, t, y, q.pinion_speed, q.pinion_acceleration)
     q.load, q.load_rate = _torque(m, LOAD, t, y, y[W], yp[W])
@@ -207,6 +212,7 @@ def _sample_radius_power(m: Model, t: float, y: Floats) -> None:
 def _accumulate(m: Model, t: float, y: Floats, yp: Floats, now: bool) -> None:
     """Add all works and losses up to a time, `now` or once so many steps have been taken."""
     q = m.work.quadrature
+    follow_orbit(m, t)
     _accumulate_losses(m, t, y, yp)
     q.steps += 1
     h = t - q.time
@@ -312,6 +318,8 @@ def _accumulate_losses(m: Model, t: float, y: Floats, yp: Floats) -> None:
     if m.scene.pair_laws & LOSING != 0:
         taken = book_losses_of_mesh(m, h, y, yp, taken)
     _note_resistance(m, t, gear, y, yp)
+    if m.scene.orbit != 0.0:
+        taken += book_orbit(m, t, y, yp)
     e.throughput += taken
 
 

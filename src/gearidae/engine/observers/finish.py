@@ -8,6 +8,7 @@ from gearidae.engine.model.state import Floats, Model
 from gearidae.engine.observers import balance
 from gearidae.engine.observers.exposures import follow as exposures
 from gearidae.engine.observers.extremes import follow as extremes
+from gearidae.engine.pairs.orbit import follow_orbit
 
 
 @compiled
@@ -33,6 +34,7 @@ def look_at(place: int, t: float, y: Floats, yp: Floats) -> None:
         State there, and its rate.
     """
     m = model_at(place)
+    follow_orbit(m, t)
     finish_account(m, t, y, yp)
     if m.scene.follow.extremes != 0:
         extremes.note_present(m, y)

@@ -12,6 +12,7 @@ from typing import NamedTuple
 from gearidae.compiled import compiled
 from gearidae.engine.model.state import PHASE, Floats, Model, V, W
 from gearidae.engine.pairs.coverage import WHOLE, Shares, path_position, share_changes, weighed
+from gearidae.engine.pairs.orbit import opening_of
 from gearidae.engine.pairs.tooth_pairs import flank_of_history
 
 SHORTEST_SQ = 1e-12
@@ -118,7 +119,7 @@ def length_power(
     coast = flank_of_history(m, k)
     where = coast, m.state.history[k].pair, y[PHASE]
     energy = weighed_length(m, where, y[W], w_rate, energies, slopes)
-    return energy.rate, energy.bend + -(1.0 - 2.0 * coast) * y[V] * energy.by_gap
+    return energy.rate, energy.bend + opening_of(m, coast, y[V]) * energy.by_gap
 
 
 @compiled

@@ -1,14 +1,15 @@
 r"""Transmission error of the gears as they are made, and how it couples their motions.
 
-The error E of a mesh is the sum of the static error and the runout of the pinion, functions of its angle, and of the
-runout of the gear, a function of its own. With :math:`u = R_1 \varphi_1 - R_2 \varphi_2 - E` the arms of a force along
+The error E of a mesh is the sum of the static error and the runout of the pinion, functions of its angle, of the runout
+of the gear, a function of its own, and of what the orbit of the pinion in its hub adds, a function h of time
+(`gearidae.engine.pairs.orbit`). With :math:`u = R_1 \varphi_1 - R_2 \varphi_2 - E` the arms of a force along
 the line of action are :math:`R_1 - \partial E/\partial\varphi_1` and :math:`R_2 + \partial E/\partial\varphi_2`, so
 that
 
 .. math::
 
-    \dot u = (1 - e_1) \dot x_1 - (1 + g_1) \dot x_2, \qquad
-    \ddot u = (1 - e_1) \ddot x_1 - e_2 \dot x_1^2 - (1 + g_1) \ddot x_2 - g_2 \dot x_2^2
+    \dot u = (1 - e_1) \dot x_1 - (1 + g_1) \dot x_2 - \dot h, \qquad
+    \ddot u = (1 - e_1) \ddot x_1 - e_2 \dot x_1^2 - (1 + g_1) \ddot x_2 - g_2 \dot x_2^2 - \ddot h
 
 with the travels :math:`x = R \varphi` of both base circles.
 """
@@ -42,6 +43,8 @@ class MeshError(NamedTuple):
         Its first two derivatives in the pinion's angle, over R1 and R1^2.
     gear, gear_bend : float
         The same in the gear's angle, over R2 and R2^2.
+    rate, bend : float
+        Its first two derivatives in time at fixed angles, which the orbit of the pinion in its hub makes.
     """
 
     angle: float
@@ -50,9 +53,11 @@ class MeshError(NamedTuple):
     pinion_bend: float
     gear: float
     gear_bend: float
+    rate: float
+    bend: float
 
 
-NO_ERROR = MeshError(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+NO_ERROR = MeshError(*(0.0,) * 8)
 name_type(NO_ERROR, "MeshError")
 
 
@@ -70,9 +75,18 @@ def mesh_error(m: Model, u: float, phase: float) -> MeshError:
     R1. Four steps are enough where E is smooth over its own size; a ripple of high order may take more. The observers
     ask for it at an accepted state one after the other: the last evaluation is kept.
     """
-    s, last = m.scene, m.work.mesh_error
+    s, last, orbit = m.scene, m.work.mesh_error, m.work.orbit
     if last.known != 0 and last.u == u and last.phase == phase and last.turns == m.state.turns:
-        return MeshError(last.angle, last.value, last.pinion, last.pinion_bend, last.gear, last.gear_bend)
+        return MeshError(
+            last.angle,
+            last.value,
+            last.pinion,
+            last.pinion_bend,
+            last.gear,
+            last.gear_bend,
+            orbit.error_rate,
+            orbit.error_bend,
+        )
     radius = s.pinion_radius / s.length_unit
     runout = gear = gear_bend = 0.0
     if s.gear_runout != 0.0:
@@ -80,8 +94,9 @@ def mesh_error(m: Model, u: float, phase: float) -> MeshError:
         runout, gear_radius = s.gear_runout * math.cos(turned), s.gear_radius / s.length_unit
         gear = -s.gear_runout * math.sin(turned) / gear_radius
         gear_bend = -runout / (gear_radius * gear_radius)
+    others = runout + orbit.error  # than those of the pinion's angle
     turns = (m.state.turns % s.pinion_teeth + phase) / s.pinion_teeth
-    rigid = 2.0 * math.pi * turns + (u + runout) / radius
+    rigid = 2.0 * math.pi * turns + (u + others) / radius
     angle = rigid
     e = e1 = e2 = 0.0
     count, first = s.error_count, s.error_at
@@ -102,9 +117,9 @@ def mesh_error(m: Model, u: float, phase: float) -> MeshError:
         angle -= step
         phase_step = highest * abs(step)  # e and its derivatives are those before the step
     last.known, last.u, last.phase, last.turns = 1, u, phase, m.state.turns
-    last.angle, last.value, last.pinion, last.pinion_bend = angle, e + runout, e1, e2
+    last.angle, last.value, last.pinion, last.pinion_bend = angle, e + others, e1, e2
     last.gear, last.gear_bend = gear, gear_bend
-    return MeshError(angle, e + runout, e1, e2, gear, gear_bend)
+    return MeshError(angle, e + others, e1, e2, gear, gear_bend, orbit.error_rate, orbit.error_bend)
 
 
 # -- motions ---------------------------------------------------------------------------------------------------------
@@ -113,26 +128,26 @@ def mesh_error(m: Model, u: float, phase: float) -> MeshError:
 @compiled(inline=True)
 def turn_of(e: MeshError, v: float, w: float) -> float:
     """Surface velocity of the pinion, for the rate of u and the surface velocity of the gear."""
-    return (v + (1.0 + e.gear) * w) / (1.0 - e.pinion)
+    return (v + (1.0 + e.gear) * w + e.rate) / (1.0 - e.pinion)
 
 
 @compiled(inline=True)
 def rate_of(e: MeshError, turn: float, w: float) -> float:
     """Rate of u, for the surface velocities of both gears."""
-    return turn * (1.0 - e.pinion) - (1.0 + e.gear) * w
+    return turn * (1.0 - e.pinion) - (1.0 + e.gear) * w - e.rate
 
 
 @compiled(inline=True)
 def pinion_acceleration(e: MeshError, turn: float, w: float, v_rate: float, w_rate: float) -> float:
     """Acceleration of the pinion's surface, for the rates of both."""
-    bends = e.pinion_bend * turn * turn + e.gear_bend * w * w
+    bends = e.pinion_bend * turn * turn + e.gear_bend * w * w + e.bend
     return (v_rate + (1.0 + e.gear) * w_rate + bends) / (1.0 - e.pinion)
 
 
 @compiled(inline=True)
 def bend_of(e: MeshError, turn: float, w: float, pinion: float, gear: float) -> float:
     """Rate of the rate of u, for the speeds and accelerations of both surfaces."""
-    bends = e.pinion_bend * turn * turn + e.gear_bend * w * w
+    bends = e.pinion_bend * turn * turn + e.gear_bend * w * w + e.bend
     return (1.0 - e.pinion) * pinion - (1.0 + e.gear) * gear - bends
 
 

@@ -14,6 +14,7 @@ from typing import NamedTuple
 from gearidae.compiled import compiled, compiled_once, name_type
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.model.state import COAST, DRIVE, PHASE, Floats, Model, U, V, W
+from gearidae.engine.pairs.orbit import acceleration_of_gap
 from gearidae.laws.pair_law import NO_PAIR_FORCE, GapMotion, in_reach
 
 # -- the walk over the pairs -----------------------------------------------------------------------------------------
@@ -193,7 +194,7 @@ def pair_gap(
     along = s.coast_phase + pair - phase if coast else phase - pair
     inside = min(max(along, 0.0), s.contact_ratio)
     outside = along - inside
-    toward = -v if not coast else v
+    toward = -v if not coast else v + m.work.orbit.play_rate
     gap = s.clearance[coast] + (u if coast else -u)
     if s.pitch_errors != 0:
         gap += pitch_error(m, coast, pair)
@@ -217,10 +218,7 @@ def pair_motion(
     """Gap of a pair with two rates at a state (u, v, phase and w) with accelerations."""
     u, v, phase, w = motion
     gap, rate, slope, _ = pair_gap(m, coast, number, u, v, phase, w)
-    acceleration = (1.0 - 2.0 * coast) * (slope * w_rate - v_rate)
-    if slope != 0.0:
-        acceleration += m.scene.relief_slope * m.scene.phase_rate * w * w
-    return GapMotion(gap, rate, acceleration)
+    return GapMotion(gap, rate, acceleration_of_gap(m, coast, slope, w, v_rate, w_rate))
 
 
 @compiled_once(SOLVER)

@@ -33,6 +33,7 @@ from gearidae.engine.motion.static_solve import settle_nodes
 from gearidae.engine.observers.balance import open_balance
 from gearidae.engine.observers.exposures.bins import ROWS
 from gearidae.engine.pairs.mesh_error import error_at
+from gearidae.engine.pairs.orbit import follow_orbit
 from gearidae.engine.pairs.tooth_pairs import contact_length
 from gearidae.engine.setup.build_contact import Nodes, add_attraction, add_contact, add_nodes, choose_model
 from gearidae.engine.setup.build_friction import add_friction
@@ -52,9 +53,15 @@ from gearidae.records.quantity import Unit
 from gearidae.scene import MATERIAL_NAMES, GearScene, RollerScene, Scene, require_gears
 from gearidae.scene.combinations import may_deflect
 from gearidae.scene.limits import check_reach, pairs_within_reach, relief_in_reach
+from gearidae.scene.orbit import fastest_turn, has_orbit
 from gearidae.scene.pitch_errors import error_on_path, errors_of_teeth, extreme_sums, has_pitch_errors
 from gearidae.scene.sampled import columns_of
 
+ORBIT_STEP = 0.01
+"""Angle by which the force of the drive turns at most between two values of its direction [rad]: a polynomial through
+six of them then has the second derivative to 4e-10."""
+_STANDS = 1e-9
+"""Speed of its direction below which that stands still [rad/s]."""
 LIGHTER = 0.25
 """Roughnesses above the bound of the asperity model; below, contacts count as deep while bodies are elastic."""
 
@@ -143,8 +150,10 @@ def _gear_problem(scene: GearScene, nodes: Nodes | None, begin: Start) -> Proble
     _set_slots(s, scene)
     add_torques(s, tables, scene, begin.time)
     set_stop(s, scene, start.mesh_phase if begin.place is None else begin.place)
+    _add_orbit(s, scene, begin.time)
     _add_errors(s, tables, scene)
     _add_pitch_errors(s, tables, scene)
+    s.orbit_nearest = s.nearest[COAST] - s.clearance[COAST]
     add_nodes(s, tables, grid)
     # an error in the phase matters by the gap it opens where tip relief is steepest
     steepest = float(s.relief_curvature * s.reach)
@@ -165,13 +174,15 @@ def _gear_problem(scene: GearScene, nodes: Nodes | None, begin: Start) -> Proble
     w = start.gear_speed * geometry.base_radius_gear / speed
     model.state.turns, model.state.first_place = whole, start.mesh_phase
     model.state.ageing.age[:] = start.rest_time / float(s.time_unit)
-    model.state.initial_lead = u + error_at(model, u, phase).value
+    follow_orbit(model, 0.0)
+    error = error_at(model, u, phase)
+    model.state.initial_lead = u + error.value
     skipped = {
         "static_error": int(not mesh.static_error),
         "harmonics": int(not drive.harmonic and not load.harmonic),
         "dry_resistance": int(s.dry == 0),
     }
-    return _begun(model, scene, [u, 0.0, phase, w], skipped)
+    return _begun(model, scene, [u, -float(error.rate), phase, w], skipped)
 
 
 def _roller_problem(scene: RollerScene, nodes: Nodes | None, begin: Start) -> Problem:
@@ -277,13 +288,28 @@ def _add_errors(s: Record, tables: Tables, scene: GearScene) -> None:
     if mesh.gear_runout is not None:
         s.gear_runout, s.gear_runout_phase = mesh.gear_runout.amplitude / sigma, mesh.gear_runout.phase
     s.error_count, s.error_at = len(harmonics), tables.add([x for harmonic in harmonics for x in harmonic])
-    s.has_error = int(s.error_count > 0 or s.gear_runout != 0.0)
+    s.has_error = int(s.error_count > 0 or s.gear_runout != 0.0 or s.orbit != 0.0)
     order = max((order for order, _, _ in harmonics), default=0)
     # two places of a table are half a period
     places = max(len(table[0]) for table in scene.coating.tables)
     if places > 1:
         order = max(order, 0.5 * places / float(s.contact_ratio) * float(s.pinion_teeth))
     s.mesh_omega = 2.0 * math.pi * max(1.0, order / float(s.pinion_teeth))
+
+
+def _add_orbit(s: Record, scene: GearScene, begin: float) -> None:
+    """Set where the centre of the pinion stands under the force of the drive."""
+    if not has_orbit(scene):
+        return
+    clearance, turned = scene.gears.pinion_hub_clearance / float(s.length_unit), scene.drive.orientation
+    pressure = scene.geometry.pressure_angle
+    s.orbit, s.orbit_play = clearance, 2.0 * clearance * math.sin(pressure)
+    s.orbit_sine, s.orbit_cosine = math.sin(pressure + turned), math.cos(pressure + turned)
+    s.orbit_x, s.orbit_y = math.cos(turned), -math.sin(turned)
+    # a power of two, so that what rounding makes of the speed changes nothing in a run that goes on
+    longest = ORBIT_STEP / max(fastest_turn(scene, begin), _STANDS)
+    s.orbit_step = 2.0 ** math.floor(math.log2(longest)) / float(s.time_unit)
+    s.noting = 1
 
 
 def _add_pitch_errors(s: Record, tables: Tables, scene: GearScene) -> None:
@@ -342,7 +368,7 @@ def _begun(m: Model, scene: Scene, motion: list[float], skipped: dict[str, int])
         (ELASTIC, s.nodes > 0),
         (EXPOSURES, s.bins > 0),
         (POPULATION, s.population.flanks > 0),
-        (FRICTION, s.friction.on != 0),
+        (FRICTION, s.friction.on != 0 or s.orbit != 0.0),
     )
     for part, wanted in parts:
         if wanted:

@@ -25,6 +25,7 @@ from gearidae.engine.model.state import (
 from gearidae.engine.observers.exposures.bins import exposures_of
 from gearidae.engine.observers.extremes.units import extremes_in_si
 from gearidae.engine.observers.finish import look_at
+from gearidae.engine.pairs.orbit import orbit_anew
 from gearidae.engine.setup import checkpoint as checkpoints
 from gearidae.engine.setup.kept_asperities import restore_asperities
 from gearidae.errors import SceneError
@@ -191,6 +192,7 @@ class Problem:
             extremes = extremes_in_si(m, self.addresses.place, time, state)
         for record, copy in zip((m.state, m.work), before, strict=True):
             assign(record, copy)
+        orbit_anew(m)
         exposures[:] = exposed
         return balance, extremes
 

@@ -114,8 +114,8 @@ def _follow_separation(m: Model, last: Record, now: Record, y: Floats) -> None:
     Elastic contacts turn round at events, which are accepted times.
     """
     if (
-        m.scene.nodes > 0 or m.scene.pitch_errors != 0
-    ):  # a tooth that stands out comes near as it enters the path
+        m.scene.nodes > 0 or m.scene.pitch_errors != 0 or m.scene.orbit != 0.0
+    ):  # a tooth that stands out comes near as it enters the path, and the coast flank with the centre of the pinion
         _note_separation(m, separation(m, y))
     if (
         m.scene.nodes == 0

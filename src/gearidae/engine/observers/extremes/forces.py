@@ -17,6 +17,7 @@ from gearidae.engine.laws.pairs import mesh_force
 from gearidae.engine.model.state import DRIVE, PHASE, Floats, Model, Record, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
 from gearidae.engine.pairs.mesh_error import pinion_acceleration, speed_and_error
+from gearidae.engine.pairs.orbit import follow_orbit
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.pairs.tooth_pairs import in_flight
 from gearidae.formulas.interpolation import cubic, quintic, vertex
@@ -38,6 +39,7 @@ def force_of_motion(m: Model, t: float, y: Floats, yp: Floats, known: float) -> 
     See `gearidae.engine.motion.residual`, whose first equation is solved for the force. Friction acts on the pinion,
     too: with it the contact law is asked, unless the force is `known` and not NaN.
     """
+    follow_orbit(m, t)
     if in_flight(m):
         return mesh_force(m, y[V], 0.0)
     if m.scene.friction.rubs != 0:
@@ -89,6 +91,7 @@ def follow_force(m: Model, before: Record, last: Record, now: Record, between: t
     bend = next_rise - rise
     if (rise * (a + b) - bend * a) * (next_rise * (a + b) + bend * b) < 0.0:
         _look_between(m, before, last, now, between)
+        follow_orbit(m, now.time)
 
 
 @compiled
