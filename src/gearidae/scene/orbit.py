@@ -151,7 +151,7 @@ def check_orbit(scene: GearScene) -> None:
     _check_knots(scene, shown)
 
 
-def _check_knots(scene: GearScene, shown: str) -> None:
+def _check_knots(scene: GearScene, shown: object) -> None:
     """Refuse a law whose direction has a jump or a kink at one of its knots."""
     assert scene.drive.law is not None
     knots, duration = torque_law(scene.drive.law.name).knots, scene.run.duration
