@@ -1,4 +1,4 @@
-"""What options cost: coverage by tooth and place over a uniform fraction, exposures over none, hubs that age over others.
+"""What options cost: coverage by tooth and place over a uniform fraction, exposures over none, hubs that age or not.
 
 Both runs of a comparison are made in turn, in one process, many times; the result is the median ratio of the
 processor time of a step. A table whose fractions are all equal gives the motion of the uniform fraction, but for
