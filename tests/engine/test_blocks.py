@@ -161,8 +161,6 @@ def test_phase_is_taken_back_without_a_trace(monkeypatch):
 
 
 def _rebase_now(m, y):
-    start.rebase.py_func.__globals__["PHASE_HIGH"] = 5.0
-    try:
-        start.rebase.py_func(m, y)
-    finally:
-        start.rebase.py_func.__globals__["PHASE_HIGH"] = 16.0
+    kept, m.scene.phase_high = float(m.scene.phase_high), 5.0
+    start.rebase.py_func(m, y)
+    m.scene.phase_high = kept

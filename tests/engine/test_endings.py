@@ -104,3 +104,16 @@ def test_the_shipped_case_at_high_speed_ends_at_every_tolerance():
     scene = gd.load_case(CASES / "high_speed.toml").replace({"run.samples": 2})
     for rtol in (1e-4, 1e-5, 1e-6):
         assert solve(scene.replace({"run.rtol": rtol})).status == "finished"
+
+
+@pytest.mark.parametrize(("backend", "method"), [("native", "auto"), ("native", "bdf"), ("sksundae", "auto")])
+def test_the_smallest_tolerance_runs_on_for_many_pitches(backend, method):
+    """The phase is then held to 1e-15 pitches: it is kept so small that rounding does not reach that."""
+    flight = {"mesh.backlash": 4e-6, "initial.gap": 2e-6, "drive.torque": 0.0, "drive.harmonic": []}
+    flight |= {"load.torque": 0.0, "load.drag": 0.0, "run.duration": 5e-4, "run.samples": 3}
+    scene = gd.preset("teodorescu2009").replace(flight | {"run.rtol": 1e-12, "run.method": method})
+    run = solve(scene, backend=backend)
+    assert run.status == "finished"
+    assert run.extremes.mesh_exits > 16
+    turned = run.samples["gear_angle"][-1] - run.samples["gear_angle"][0]
+    assert turned == pytest.approx(2898.0 * 5e-4, rel=1e-11, abs=0)

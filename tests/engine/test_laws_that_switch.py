@@ -105,11 +105,17 @@ def test_pulses_push_gears_at_rest_as_a_schedule_does(name):
     )
 
 
+WAYS = [("native", "auto"), ("native", "bdf"), ("sksundae", "auto")]
+
+
+@pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("name", ["sectors", "sectors_with_switch"])
-def test_sectors_of_the_angle_keep_their_work(flight, name):
+def test_sectors_of_the_angle_keep_their_work(flight, name, way):
     """In flight the energy of the pinion grows by the torque times the angle within the sectors."""
     order, torque = 400.0, 1e-17
-    run = solve(flight.replace({"drive.law": law(name, torque, order), "run.rtol": 1e-7}))
+    backend, method = way
+    changes = {"drive.law": law(name, torque, order), "run.rtol": 1e-7, "run.method": method}
+    run = solve(flight.replace(changes), backend=backend)
     angle, speed = run.samples["pinion_angle"], run.samples["pinion_speed"]
     half = math.acos(0.3)
 
@@ -123,10 +129,13 @@ def test_sectors_of_the_angle_keep_their_work(flight, name):
     np.testing.assert_allclose(0.5 * I1 * (speed**2 - speed[0] ** 2), work, rtol=0, atol=2e-4 * work[-1])
 
 
+@pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("name", ["bang", "bang_with_switch"])
-def test_a_law_that_chatters_is_named(flight, name):
+def test_a_law_that_chatters_is_named(flight, name, way):
     """A bang-bang controller of the speed without a hysteresis switches for ever once it has reached its speed."""
-    run = solve(flight.replace({"drive.law": law(name, 1e-17, 6.5), "run.rtol": 1e-6}))
+    backend, method = way
+    changes = {"drive.law": law(name, 1e-17, 6.5), "run.rtol": 1e-6, "run.method": method}
+    run = solve(flight.replace(changes), backend=backend)
     assert run.status == "law_chatter"
     assert run.time[-1] < 2e-3
     assert "hysteresis" in run.message

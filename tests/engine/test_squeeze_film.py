@@ -6,6 +6,7 @@ import pytest
 import gearidae as gd
 from balances import assert_balanced
 from gearidae.engine import solve
+from gearidae.engine.setup.build import make_problem
 
 PRESET = gd.preset("teodorescu2009").replace({"contact.model": "asperity"})
 APPROACH = PRESET.replace(
@@ -56,6 +57,39 @@ def test_a_free_approach_has_its_closed_form(backend, method):
     taken = pairs * 0.5 * mesh.film_damping * mesh.film_gap**3 * (inverse - inverse[0])
     assert slowed[-1] > 0.01 * reduced_mass(scene) * closing[0]
     np.testing.assert_allclose(slowed, taken, rtol=1e-6, atol=1e-8 * taken[-1])
+
+
+@pytest.mark.parametrize("backend", ["native", "sksundae"])
+def test_a_film_ends_at_the_cut_off(backend):
+    """Flanks that part are slowed down by the film up to the cut-off, and fly freely from there on.
+
+    It is so high that it damps there with a third of what it does in contact.
+    """
+    scene = APPROACH.replace(
+        {
+            "drive.schedule": [[0.0, 0.0], [1e-8, -1e-10], [1e-7, -1e-10], [1.1e-7, 0.0]],
+            "mesh.film_gap": 1e-7,
+            "mesh.film_damping": 1e-5,
+            "initial.gap": 4e-8,
+            "run.duration": 3e-6,
+        }
+    )
+    run, sigma, mesh = solve(scene, backend=backend), scene.surface.roughness, scene.mesh
+    cutoff = float(make_problem(scene).model.scene.cutoff) * sigma
+    gap, geometry = run.samples["drive_gap"], scene.geometry
+    opening = geometry.base_radius_gear * run.samples["gear_speed"]
+    opening = opening - geometry.base_radius_pinion * run.samples["pinion_speed"]
+    free = gap > cutoff
+    begin = int(np.searchsorted(run.time, 1.1e-7, side="right"))
+    assert gap[begin] < 0.9 * cutoff
+    assert free.sum() > 100
+    np.testing.assert_allclose(opening[free], opening[-1], rtol=1e-9)
+    pairs = 2 if scene.initial.mesh_phase + 1.0 < geometry.contact_ratio else 1
+    taken = (gap[begin] + mesh.film_gap) ** -2 - (cutoff + mesh.film_gap) ** -2
+    taken *= pairs * 0.5 * mesh.film_damping * mesh.film_gap**3 / reduced_mass(scene)
+    assert taken > 0.01 * opening[begin]
+    assert opening[begin] - opening[-1] == pytest.approx(taken, rel=1e-6, abs=0)
+    assert_balanced(run.balance, scene)
 
 
 @pytest.mark.parametrize("rtol", [1e-6, 1e-8, 1e-10])

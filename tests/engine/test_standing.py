@@ -296,6 +296,36 @@ def test_gears_break_away_at_the_closed_form_whatever_the_ramp(ramp):
     assert float(ds.start_time) == last_slip(ds, ramp)
 
 
+@pytest.mark.parametrize(
+    ("coefficient", "radii", "dry", "top", "ramp"),
+    [
+        (0.20567, (3.2319e-6, 7.1414e-6), 7.069e-17, 6.803e-17, 0.3725),
+        (0.12606, (5.6950e-6, 9.5894e-6), 5.3198e-17, 3.839e-17, 0.34424),
+    ],
+)
+def test_gears_whose_hubs_hold_little_break_away_at_the_closed_form(coefficient, radii, dry, top, ramp):
+    """Free gears go no farther than teeth that give way: what was at rest up to its slip has stood until then."""
+    scene = PAIR.replace(
+        {
+            "gears.hub_friction": coefficient,
+            "gears.pinion_hub_radius": radii[0],
+            "gears.gear_hub_radius": radii[1],
+            "load.torque": dry,
+            "coating.sam_fraction": 1.0,
+            "run.duration": ramp,
+            "run.samples": "off",
+            "drive.schedule": [(0.0, 0.0), (ramp, top)],
+        }
+    )
+    wanted = friction.hub_starting_torque(scene.geometry, dry, coefficient, radii)
+    without = dry * scene.geometry.base_radius_pinion / scene.geometry.base_radius_gear
+    assert without < 0.96 * wanted
+    ds = gd.simulate(scene)
+    # its teeth ring, by some parts of ten thousand of the force
+    assert float(ds.breakaway_torque) == pytest.approx(wanted, rel=2e-3, abs=0)
+    assert ds.gearidae.standstills().rest_time.iloc[0] > 0.9 * float(ds.start_time)
+
+
 def test_the_end_of_a_standstill_does_not_depend_on_where_the_run_is_cut():
     """As long as it has not come half as far as free gears it stands; from then on it has broken away at one time."""
     whole = gd.simulate(hubs_alone(0.3, 0.3))

@@ -223,14 +223,7 @@ def _continues(scene, looser, ds):
     assert abs(float(rest.gear_speed[-1]) - last) <= allowed, "a continued run is the whole"
 
 
-# The balance of a law that switches on the angle, beside a film on discrete asperities of gears with errors of teeth
-# and runout, is out by up to 24 bounds; the run says so. Without any one of these it closes.
-OPEN = {
-    8: pytest.mark.xfail(strict=True, reason="work of a law of sectors beside a film and errors of teeth")
-}
-
-
-@pytest.mark.parametrize("seed", [pytest.param(seed, marks=OPEN.get(seed, ())) for seed in range(FEW)])
+@pytest.mark.parametrize("seed", range(FEW))
 def test_a_drawn_run(seed):
     check(seed)
 

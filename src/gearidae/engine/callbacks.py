@@ -11,8 +11,8 @@ from numba import carray, types  # type: ignore[attr-defined]
 from gearidae.compiled import compiled, compiled_callback
 from gearidae.engine.model.addresses import model_at
 from gearidae.engine.motion.block_jacobian import assemble, factorise, solve_blocks, unknowns
-from gearidae.engine.motion.residual import jacobian, residual
-from gearidae.engine.step import Attempt, iterate
+from gearidae.engine.motion.residual import jacobian
+from gearidae.engine.step import Attempt, iterate, residual_of_attempt
 from gearidae.engine.sundials import memory as ptr
 from gearidae.engine.sundials import names as sun
 from gearidae.engine.sundials.ida_memory import Functions
@@ -67,7 +67,7 @@ def _residual() -> Any:
     def evaluate(t, yy, yp, rr, data):  # type: ignore[no-untyped-def]
         m = model_at(data)
         n = m.scene.states
-        residual(m, t, ptr.numbers(yy, n), ptr.numbers(yp, n), ptr.numbers(rr, n))
+        residual_of_attempt(m, t, ptr.numbers(yy, n), ptr.numbers(yp, n), ptr.numbers(rr, n))
         return 0
 
     return evaluate

@@ -14,14 +14,14 @@ from gearidae.engine.integrate.resting import rest_step
 from gearidae.engine.model.addresses import model_at
 from gearidae.engine.model.state import Floats
 from gearidae.engine.motion.observe import observe
-from gearidae.engine.motion.residual import jacobian, residual
-from gearidae.engine.step import finish_step
+from gearidae.engine.motion.residual import jacobian
+from gearidae.engine.step import finish_step, residual_of_attempt
 
 
 @compiled
 def residual_at(place: int, t: float, y: Floats, yp: Floats, out: Floats) -> None:
-    """`gearidae.engine.motion.residual.residual`."""
-    residual(model_at(place), t, y, yp, out)
+    """`gearidae.engine.step.residual_of_attempt`."""
+    residual_of_attempt(model_at(place), t, y, yp, out)
 
 
 @compiled

@@ -104,7 +104,7 @@ def run(
     reader : SampleReader, optional
         Reads the model at some of the samples.
     """
-    m = problem.prepare(rtol, total)
+    m = problem.prepare(rtol, total, as_ida=as_ida)
     s = make_arrays(problem, m, as_ida)
     out = Output.empty(len(problem.columns))
     if resume is not None:

@@ -68,7 +68,7 @@ def run(
     reader: SampleReader | None = None,
 ) -> Iterator[Block]:
     """Run a problem, block by block; see `gearidae.engine.native.run`."""
-    m = problem.prepare(rtol, total)
+    m = problem.prepare(rtol, total, as_ida=True)
     if m.scene.states > STATES_HIGH:
         raise SceneError(
             "backend",
@@ -155,7 +155,8 @@ class _Solver:
     """scikit-sundae's IDA over fresh callbacks, since it keeps the event history on the function it is given."""
 
     def __init__(self, problem: Problem, m: Model, y: Floats) -> None:
-        self.m, self.addresses, self._atol = m, Addresses(m), m.scene.rtol * problem.tolerance_scale
+        first = m.scene.error_weights_at
+        self.m, self.addresses, self._atol = m, Addresses(m), 1.0 / m.rows[first : first + y.size]
         self._driver: Record = m.work.driver
         self._guard_calls = 0
         self._last: Any = None

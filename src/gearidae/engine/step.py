@@ -37,12 +37,14 @@ from gearidae.engine import adams
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.elastic.static_condensation import begin_deflections
 from gearidae.engine.events.asperity_events import record_switches, switch_asperities
+from gearidae.engine.events.cutoff import begin_within, note_within, watches_cutoff
 from gearidae.engine.events.events import ROOT, STOP, chatters, guard, handle_mesh
 from gearidae.engine.events.histories import accept
 from gearidae.engine.events.law_switches import (
     laws_chatter,
     misses_laws,
     note_law_jump,
+    note_step_of_laws,
     set_law_sides,
     set_law_window,
     switch_shafts,
@@ -77,7 +79,7 @@ from gearidae.engine.integrate.roots import (
     state_at,
     state_for_sample,
 )
-from gearidae.engine.integrate.start import PHASE_HIGH, first_step, rebase, set_rates
+from gearidae.engine.integrate.start import first_step, rebase, set_rates
 from gearidae.engine.integrate.step_control import (
     below_gap_bound,
     change_wanted,
@@ -90,6 +92,7 @@ from gearidae.engine.model.record_types import FREE
 from gearidae.engine.model.state import PHASE, Floats, Model, W
 from gearidae.engine.motion.observe import observe
 from gearidae.engine.motion.pair_forces import finish_deflections, is_eliminated, set_deflections
+from gearidae.engine.motion.residual import residual
 from gearidae.engine.observers import adhesion_loss, balance, friction_losses
 from gearidae.engine.observers.exposures import follow as exposures
 from gearidae.engine.observers.exposures.contacts import add_asperity_switches
@@ -111,6 +114,8 @@ LEAST: Final = 1e-4  # of that estimate
 FAILED: Final = 902  # what SUNDIALS answers with shorter steps
 _FALLEN_AT_ONCE: Final = 4
 """Times that guards are looked at again after an event; one suffices but where the new speeds turn a gap round, too."""
+_CLOSE: Final = 16.0 * float(np.finfo(float).eps)
+"""Of the end's time: so shortly before it IDA refuses to start anew, and can do without."""
 
 
 # -- the loop --------------------------------------------------------------------------------------------------------
@@ -264,6 +269,22 @@ class Attempt(NamedTuple):
     weights: Floats
 
 
+@compiled
+def residual_of_attempt(m: Model, t: float, y: Floats, yp: Floats, out: Floats) -> None:
+    """Residual at the end of a step that IDA tries by itself.
+
+    It is not a number where the step passes over a law's jump: the iteration then fails, and IDA tries a shorter step.
+    """
+    residual(m, t, y, yp, out)
+    if m.scene.law_watched == 0 or t <= m.work.adams.time:
+        return
+    jumps, steps = m.work.law_jumps, m.work.law_steps
+    if misses_laws(m, t, y):
+        for j in range(out.size):
+            out[j] = math.nan
+    m.work.law_jumps, m.work.law_steps = jumps, steps  # which an accepted step counts
+
+
 @compiled(inline=True)
 def iterate(n: int, m: Model, attempt: Attempt) -> int:
     """Correct a prediction until what is left is far below the tolerance, and set the weights that test it.
@@ -325,7 +346,7 @@ def iterate(n: int, m: Model, attempt: Attempt) -> int:
                 a.new_differences[0, j] = cj * correction[j] + a.predicted_rates[j]
             # Two faults that no estimate of the error sees: a state where forces are extrapolated, and a jump of a law
             # that the step passes over. A shorter step is tried.
-            if below_gap_bound(m, a) or (m.scene.law_watched != 0 and misses_laws(m, attempt.step)):
+            if below_gap_bound(m, a) or (m.scene.law_watched != 0 and _passes_jump(n, m, attempt)):
                 return FAILED
             if by_adams:
                 control_step(n, m, attempt.step, correction, attempt.weights)
@@ -334,6 +355,14 @@ def iterate(n: int, m: Model, attempt: Attempt) -> int:
     a.failures += 1
     a.contraction_rate = 1.0
     return FAILED
+
+
+@compiled
+def _passes_jump(n: int, m: Model, attempt: Attempt) -> bool:
+    """Whether the step that has been solved passes over a law's jump."""
+    for j in range(n):
+        attempt.y[j] = m.work.adams.new_state[j]
+    return misses_laws(m, attempt.t, attempt.y)
 
 
 # -- locate ----------------------------------------------------------------------------------------------------------
@@ -446,14 +475,17 @@ def finish_step(
     error = BOUND_EXCEEDED if m.state.bound_exceeded != 0 else 0
     if in_flight(m):
         m.state.progress.flight_steps += 1
+    if m.scene.law_watched != 0 and m.work.adams.native_newton == 0:
+        note_step_of_laws(m, t, y)
     if m.work.law_jumps != 0 and laws_chatter(m):
         error = LAW_CHATTER
     afresh = (
         change_wanted(m, y, yp)
         or (driver.resting == 0 and comes_to_rest(m, t, y))
         # whole pitches are taken out at a restart: the phase is held to absolute tolerances, down to 1e-15
-        or abs(y[PHASE]) > PHASE_HIGH
+        or abs(y[PHASE]) > m.scene.phase_high
     )
+    afresh &= m.scene.end - t > _CLOSE * m.scene.end
     if root:
         steps = driver.step, t - driver.step_end
         for again in range(1 + _FALLEN_AT_ONCE):
@@ -594,6 +626,8 @@ def switch(
     if m.scene.law_switches != 0 and set_law_sides(m, t, y):
         note_law_jump(m)
         restart = True
+    if watches_cutoff(m):
+        restart |= note_within(m, y)
     resume_account(m, t, y, crossed, joined)
     passages = filled[1]
     if crossed and m.scene.follow.passages != 0:
@@ -641,6 +675,11 @@ def prepare_start(m: Model, t: float, y: Floats, yp: Floats) -> None:
     follow_orbit(m, t)
     if m.scene.law_switches != 0:
         set_law_sides(m, t, y)
+    m.work.adams.time = t
+    if m.scene.law_watched != 0:
+        note_step_of_laws(m, t, y)
+    if watches_cutoff(m):
+        begin_within(m, y)
     if m.scene.friction.ages != 0:
         begin_ageing(m, t, y)
     driver.resting = 1 if begin_rest(m, t, y) else 0

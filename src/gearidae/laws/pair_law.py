@@ -143,7 +143,9 @@ class PairLaw:
     power : (m, t, y, k, gap, w_rate, value) -> value
         Adds the power of the changing length of a pair's contact, and its rate.
     loss : (m, h, before, now, value) -> value
-        Adds what it takes from a pair in a step of the length h, between two `GapMotion`, and the error of that.
+        Adds what it takes from a pair in a step of the length h, between two `GapMotion`, and the error of that. Of a
+        law that has it the force may jump at the cut-off: passing that is an event, and force and loss are asked of a
+        pair throughout a step or not at all.
     mesh_force : (m, rate, value) -> value
         Adds the force on a whole mesh, by the rate of the transmission error alone.
     mesh_by_rate : (m, value) -> value

@@ -61,6 +61,10 @@ def _read_times(value: object) -> object:
     return times
 
 
+SMALLEST_RTOL = 1e-12
+"""Smallest relative tolerance: rounding of a state is a hundredth of it where gears have turned by a pitch."""
+
+
 class Run(Group):
     """How long, how finely sampled, how accurate."""
 
@@ -72,7 +76,7 @@ class Run(Group):
         description="uniform samples, both ends included: a number, a rate, ringing (as many as show how the contacts "
         "ring), or off",
     )
-    rtol: Annotated[float, Quantity(unit="1", at_least=1e-12, at_most=0.1)] = Field(
+    rtol: Annotated[float, Quantity(unit="1", at_least=SMALLEST_RTOL, at_most=0.1)] = Field(
         default=1e-6,
         description="relative tolerance of the solver; 1e-4 gives the adhesion loss of the shipped cases to 0.1 %",
     )

@@ -14,6 +14,7 @@ from typing import Final
 from gearidae.compiled import compiled
 from gearidae.engine.elastic.nodes import middle_gap
 from gearidae.engine.events.asperity_events import asperity_guard
+from gearidae.engine.events.cutoff import cutoff_guard, watches_cutoff
 from gearidae.engine.events.law_switches import law_guard, shaft_guard
 from gearidae.engine.events.mesh_marks import cross_mark, crossed_mark, mark_guard, outruns_relief
 from gearidae.engine.events.pair_events import pair_guard
@@ -45,8 +46,9 @@ def guard(m: Model, t: float, y: Floats) -> float:
     """Root function: falls through zero at the first of all possible events.
 
     Every single guard (a pair's onset or separation, its turning point, full stretch of a material, a mark of the
-    mesh, the dry resistance, a flank coming near) is positive while it waits, so that the least of them waits for
-    them all. What has happened is disarmed where it is dealt with, and the next in the same step is found in its turn.
+    mesh, the dry resistance, a flank coming near, a pair at the cut-off) is positive while it waits, so that the least
+    of them waits for them all. What has happened is disarmed where it is dealt with, and the next in the same step is
+    found in its turn.
     """
     follow_orbit(m, t)
     least = mark_guard(m, y)
@@ -58,6 +60,8 @@ def guard(m: Model, t: float, y: Floats) -> float:
         least = min(least, law_guard(m, t, y))
     if m.scene.guarded != 0:
         least = min(least, shaft_guard(m, y))
+    if watches_cutoff(m):
+        least = min(least, cutoff_guard(m, y))
     if m.state.flank_in_reach[COAST] == 0:
         least = min(least, nearest_gap(m, COAST, y) - m.scene.cutoff)
     if m.state.flank_in_reach[DRIVE] == 0:

@@ -8,6 +8,7 @@ from gearidae.compiled import compiled
 from gearidae.engine.elastic.histories import follow_nodes, init_nodes
 from gearidae.engine.elastic.nodes import middle_gap
 from gearidae.engine.events.asperity_events import join_at_start
+from gearidae.engine.events.cutoff import begin_within, watches_cutoff
 from gearidae.engine.events.law_switches import set_shaft_sides
 from gearidae.engine.events.mesh_marks import set_marks
 from gearidae.engine.events.sliding import begin_sliding
@@ -96,6 +97,8 @@ def begin(m: Model, t: float, y: Floats) -> None:
     set_marks(m, y[PHASE])
     if m.scene.guarded != 0:
         set_shaft_sides(m, y)
+    if watches_cutoff(m):
+        begin_within(m, y)
     if m.scene.population.flanks != 0:
         join_at_start(m, y)
     if m.scene.friction.on != 0:

@@ -8,10 +8,10 @@ from typing import Final
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.events.record import record
-from gearidae.engine.model.state import DRIVE, PHASE, Floats, Model, U, V, W
+from gearidae.engine.model.state import DRIVE, MOTION, PHASE, Floats, Model, U, V, W
 from gearidae.engine.pairs.mesh_error import pinion_speed
 from gearidae.engine.pairs.shaft_angle import torque_angle
-from gearidae.laws.shaft.own import SHIFT, law_misfit, switch_value
+from gearidae.laws.shaft.own import SHIFT, law_misfit, law_value, on_its_side, switch_value
 from gearidae.laws.shafts import guard, switch
 from gearidae.records import Flank
 
@@ -127,39 +127,55 @@ def _returns(
     m: Model, shaft: int, t: float, h: float, first: tuple[float, float], last: tuple[float, float]
 ) -> bool:
     """Whether the function of a law's switch has another sign within a step than at both ends."""
-    side = m.work.law_side[shaft]
-    if side * switch_value(m, shaft, t + h, last[0], last[1]) < 0.0:
-        return False
     for i in range(1, 4):
         share = 0.25 * i
         angle, speed = first[0] + share * (last[0] - first[0]), first[1] + share * (last[1] - first[1])
-        if side * switch_value(m, shaft, t + share * h, angle, speed) < 0.0:
+        if not on_its_side(m, shaft, t + share * h, angle, speed):
             return True
     return False
 
 
+@compiled
+def note_step_of_laws(m: Model, t: float, y: Floats) -> None:
+    """Note where the next step begins, where IDA iterates by itself; a jump that this one has kept small is counted."""
+    a = m.work.adams
+    if t > a.time:
+        misses_laws(m, t, y)
+    a.time = t
+    for j in range(MOTION):
+        a.state[j] = y[j]
+
+
 @compiled_once(SOLVER)
-def misses_laws(m: Model, h: float) -> bool:
-    """Whether a step that is tried passes over a law's jump.
+def misses_laws(m: Model, t: float, y: Floats) -> bool:
+    """Whether a step that is tried passes over a law's jump on its way to a time and a state.
 
     Of a law that says nothing of its jumps, the impulse that may be missed must be beyond the tolerance. Of one that
-    has a function with zeros there, two zeros within the step count; a single one is found as a root.
+    has a function with zeros there, two zeros within the step count. A single one is found as a root; until there the
+    polynomial of the step has a part of the jump behind it, which must not be beyond the tolerance either: the error
+    test sees no more than a tenth of that, for it looks at the highest difference alone.
     """
-    a, t = m.work.adams, m.work.adams.time
+    a = m.work.adams
+    h = t - a.time
     for shaft in range(2):
         switches = m.work.torque_switch[shaft] != 0
         if m.scene.torque[shaft].law_unknown == 0 and not switches:
             continue
         mass, state = (m.scene.pinion_inverse_mass, V) if shaft == DRIVE else (m.scene.gear_inverse_mass, W)
+        mass *= m.rows[m.scene.error_weights_at + state]
         first = torque_angle(m, shaft, a.state[U], a.state[PHASE]), _speed(m, shaft, a.state)
-        last = torque_angle(m, shaft, a.new_state[U], a.new_state[PHASE]), _speed(m, shaft, a.new_state)
-        if switches:
-            if _returns(m, shaft, t, h, first, last):
+        last = torque_angle(m, shaft, y[U], y[PHASE]), _speed(m, shaft, y)
+        if not switches:
+            missed = law_misfit(m, shaft, a.time, h, first, last) * mass
+            if missed > NOTED * SHARE:
+                note_law_jump(m)
+            if missed > SHARE:
                 return True
-            continue
-        missed = law_misfit(m, shaft, t, h, first, last) * mass * m.rows[m.scene.error_weights_at + state]
-        if missed > NOTED * SHARE:
-            note_law_jump(m)
-        if missed > SHARE:
-            return True
+        elif on_its_side(m, shaft, t, last[0], last[1]):
+            if _returns(m, shaft, a.time, h, first, last):
+                return True
+        else:
+            jump = law_value(m, shaft, t, last[0], last[1]) - law_value(m, shaft, a.time, first[0], first[1])
+            if h * abs(jump) * mass > SHARE:
+                return True
     return False

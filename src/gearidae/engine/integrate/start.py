@@ -14,8 +14,6 @@ from gearidae.engine.motion.residual import residual
 from gearidae.engine.pairs.mesh_error import error_at
 from gearidae.engine.pairs.tooth_pairs import in_flight, nearest_gap
 
-PHASE_HIGH = 16.0
-"""Pitches at which whole ones are taken out of the phase: it is held to absolute tolerances, down to 1e-15."""
 FIRST_RELIEF = 0.25
 """First step, over that in which the tip relief may part a pair."""
 
@@ -78,7 +76,7 @@ def first_step(m: Model, t: float, y: Floats, yp: Floats, longest: float) -> flo
 @compiled
 def rebase(m: Model, y: Floats) -> None:
     """Move whole pitches from the phase to ``m.state.turns``, with all that is counted along."""
-    if abs(y[PHASE]) < PHASE_HIGH:
+    if abs(y[PHASE]) < m.scene.phase_high:
         return
     slots = m.scene.slots  # a multiple of the slots leaves every pair in its own
     shift = slots * math.floor(y[PHASE] / slots)

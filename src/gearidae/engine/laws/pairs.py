@@ -34,10 +34,10 @@ from gearidae.engine.pairs.tooth_pairs import (
     flank_of_history,
     is_on_path,
     list_known,
-    pair_at,
     pair_motion,
-    pairs_felt,
+    pair_within,
     path_gap,
+    was_within,
 )
 from gearidae.engine.population.contact_point import state_of_pair
 from gearidae.formulas.quadrature import Ends
@@ -71,6 +71,21 @@ def _asked(law: PairLaw, verb: Verb, rest: Verb) -> Verb:
     return ask
 
 
+def _within_step(law: PairLaw) -> Verb | None:
+    """Force of a law; of one that loses energy where the pair was within the cut-off at the beginning of the step."""
+    verb = law.force
+    if verb is None or law.loss is None:
+        return verb
+
+    @compiled(inline=True)
+    def ask(m: Any, t: float, y: Any, pair: Any, settling: bool, value: PairForce) -> PairForce:
+        if was_within(m, pair.k, pair.number):
+            value = verb(m, t, y, pair, settling, value)
+        return value
+
+    return ask
+
+
 @compiled(inline=True)
 def _no_more(*arguments: Any) -> Any:
     return arguments[-1]
@@ -85,7 +100,7 @@ def _sum(verbs: Iterable[Verb | None]) -> Any:
     return total
 
 
-_force = _sum(law.force for law in PAIR_LAWS)
+_force = _sum(_within_step(law) for law in PAIR_LAWS)
 _energy = _sum(law.energy for law in PAIR_LAWS)
 _joining = _sum(law.joining for law in PAIR_LAWS)
 _in_contact = _sum(law.in_contact for law in PAIR_LAWS)
@@ -186,11 +201,12 @@ def _booking(law: PairLaw) -> Verb:
     @compiled
     def book_pairs(m: Any, h: float, y: Any, yp: Any, value: float) -> float:
         r, taken = m.work.resistance, (0.0, 0.0)
-        phase, reach = m.scene.phase_rate * r.gear_travel, pairs_felt(m, y)
-        before = r.mesh_travel, r.mesh_speed, phase, r.gear_speed
+        before = r.mesh_travel, r.mesh_speed, m.scene.phase_rate * r.gear_travel, r.gear_speed
         now = y[U], y[V], y[PHASE], y[W]
-        for i in range(reach.total):
-            coast, number = pair_at(reach, i)
+        for k in range(m.scene.histories):
+            if m.work.within[k] == 0.0:
+                continue
+            coast, number = flank_of_history(m, k), pair_within(m, k)
             follow_orbit(m, r.time)
             start = pair_motion(m, coast, number, before, r.mesh_acceleration, r.gear_acceleration)
             follow_orbit(m, r.time + h)
@@ -203,6 +219,8 @@ def _booking(law: PairLaw) -> Verb:
     return book_pairs
 
 
+LOSING_PAIRS: Final = sum(1 << k for k, law in enumerate(PAIR_LAWS) if law.loss is not None)
+"""Of `pair_laws`: those that take energy from pairs, which pass the cut-off as an event."""
 LOSING: Final = sum(1 << k for k, law in enumerate(PAIR_LAWS) if law.losses)
 """Of `pair_laws`: those with a loss."""
 _losses = _sum(_booking(law) if law.losses else None for law in PAIR_LAWS)

@@ -224,6 +224,7 @@ _STANDING_FIELDS: Final = (
     Quantity("near_position", "where it was then", PITCHES),
     Quantity("slip_time", "when dry friction last let go", SECONDS),
     Quantity("slip_position", "where the gear was then", PITCHES),
+    flag("slip_from_rest", "1 if dry friction held the gear until then"),
 )
 
 _AGEING_FIELDS: Final = (

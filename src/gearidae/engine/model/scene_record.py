@@ -257,6 +257,7 @@ SCENE: Final = record_type(
     ("friction", FRICTION),  # of flanks and hubs
     ("noting", INT),  # 1 where the forces of single pairs are noted, for exposures, friction or nodes
     ("gear_teeth", REAL),  # [1]
+    ("phase_high", REAL),  # phase at which whole pitches are taken out of it [pb]
     ("nearest", REAL, (2,)),  # clearance of the teeth that stand out farthest, by flank [sigma]
     ("pitch_errors", INT),  # 1 if teeth have errors of their own
     ("pinion_errors_at", INT),  # those of the pinion's teeth among the tables [index]

@@ -333,4 +333,9 @@ WORK: Final = record_type(
     ("mesh_error", MESH_ERROR),  # of a mesh that has one
     ("pitch_error", PITCH_ERROR, (2 * SLOTS_HIGH,)),  # by history
     ("orbit", ORBIT),  # of a pinion that has one
+    (
+        "within",
+        REAL,
+        (2 * SLOTS_HIGH,),
+    ),  # number and a half of the pair within the cut-off; 0 for none, by history
 )

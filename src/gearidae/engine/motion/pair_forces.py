@@ -22,6 +22,7 @@ from gearidae.engine.pairs.orbit import follow_orbit
 from gearidae.engine.pairs.pair_force import NO_MESH_FORCES, MeshForces, add_pair
 from gearidae.engine.pairs.tooth_pairs import (
     PairState,
+    acts,
     contact_length,
     flank_of_history,
     pair_at,
@@ -30,7 +31,7 @@ from gearidae.engine.pairs.tooth_pairs import (
     pairs_touching,
 )
 from gearidae.engine.population.contact_point import state_of_pair
-from gearidae.laws.pair_law import PairForce, in_reach
+from gearidae.laws.pair_law import PairForce
 
 
 @compiled(inline=True)
@@ -55,7 +56,7 @@ def mesh_forces(m: Model, t: float, y: Floats, settling: bool) -> MeshForces:
     for i in range(reach.total):
         coast, number = pair_at(reach, i)
         pair = state_of_pair(m, coast, number, y)
-        if in_reach(m, pair.gap):
+        if acts(m, pair):
             force = force_of_pair(m, t, full, pair, settling)
             if m.scene.noting != 0:
                 note_pair_force(m, pair, force)
@@ -74,7 +75,7 @@ def force_of_one(m: Model, t: float, y: Floats, coast: int, number: int) -> floa
     """Force of a single pair along the line of action by all laws of the scene, positive where its flanks push."""
     follow_orbit(m, t)
     pair = state_of_pair(m, coast, number, y)
-    return force_of_pair(m, t, y, pair, False).load if in_reach(m, pair.gap) else 0.0
+    return force_of_pair(m, t, y, pair, False).load if acts(m, pair) else 0.0
 
 
 # -- slopes along which deflections follow ---------------------------------------------------------------------------
@@ -148,7 +149,7 @@ def _ask_for_deflections(m: Model, t: float, y: Floats, kind: int) -> None:
     for i in range(reach.total):
         coast, number = pair_at(reach, i)
         pair = pair_state(m, coast, number, y)
-        if in_reach(m, pair.gap):
+        if acts(m, pair):
             m.work.settling[pair.k].reached = 1
             note_shares(m, pair.k, coast, number, pair.place)
             pair_deflections(m, kind, t, y, pair, contact_length(m, pair.place))

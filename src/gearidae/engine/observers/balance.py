@@ -35,6 +35,7 @@ from typing import Final
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine import adams
 from gearidae.engine.compiling import SOLVER
+from gearidae.engine.events.cutoff import cutoff_guard, watches_cutoff
 from gearidae.engine.events.mesh_marks import crossed_mark
 from gearidae.engine.events.pair_events import newly_stretched
 from gearidae.engine.events.sliding import dry_guard
@@ -58,6 +59,7 @@ from gearidae.formulas.quadrature import (
     integral,
     torque_work,
 )
+from gearidae.laws.shaft.own import last_on_its_side
 from gearidae.laws.shafts import book_losses, driving_force, driving_rate, is_constant, stored_by_laws
 
 ORDER: Final = 4
@@ -158,7 +160,11 @@ def _can_wait(m: Model, t: float, y: Floats) -> bool:
     """
     if m.scene.nodes > 0 or m.state.bound_exceeded != 0:
         return False
-    if m.scene.population.flanks != 0 or m.scene.friction.rubs != 0 or m.scene.guarded != 0:  # forces jump
+    if m.scene.population.flanks != 0 or m.scene.friction.rubs != 0:  # forces jump
+        return False
+    if m.scene.guarded != 0 or m.scene.law_switches != 0:  # torques do
+        return False
+    if watches_cutoff(m) and cutoff_guard(m, y) <= 0.0:
         return False
     if in_flight(m) or t - m.work.quadrature.time > m.scene.quadrature_time:
         return False
@@ -363,7 +369,8 @@ def look(m: Model, t: float, y: Floats) -> None:
     now.largest = e.peak_kinetic + abs(e.start_stored) + abs(e.start_shafts) + abs(e.model_change)
     if m.scene.gear_inverse_mass != 0.0:  # a gear that is held has neither travel nor speed
         pinion, gear, twice = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass, 2.0 * e.peak_kinetic
-        now.pitch_work = 2.0 / m.scene.phase_rate  # both shafts' torques are at most the unit of force
+        # torques that are integrated over travels are at most the unit of force; springs store by the angle alone
+        now.pitch_work = 2.0 / m.scene.phase_rate
         now.speed_work = math.sqrt(twice / pinion) + math.sqrt(twice / gear)
         top_speed = math.sqrt(twice / (1.0 / pinion + 1.0 / gear))
         now.torque_work = _torque_slopes(m, t, y) * top_speed * t
@@ -398,4 +405,6 @@ def _torque(
     if is_constant(m, shaft):
         return m.scene.torque[shaft].constant, 0.0
     angle = torque_angle(m, shaft, y[U], y[PHASE])
-    return driving_force(m, shaft, t, angle, speed), driving_rate(m, shaft, t, angle, speed, acceleration)
+    then, angle, speed = last_on_its_side(m, shaft, t, angle, speed, acceleration)
+    rate = driving_rate(m, shaft, then, angle, speed, acceleration)
+    return driving_force(m, shaft, then, angle, speed) + (t - then) * rate, rate

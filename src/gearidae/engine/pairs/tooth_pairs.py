@@ -269,6 +269,27 @@ def on_path(pair: PairState, place: float, place_rate: float, moves: bool) -> Pa
     )
 
 
+@compiled(inline=True)
+def was_within(m: Model, k: int, number: int) -> bool:
+    """Whether a pair, of which k is the index of its history, was within the cut-off at the last event.
+
+    It is noted for meshes with a law that loses energy, see `gearidae.engine.events.cutoff`.
+    """
+    return bool(m.work.within[k] == number + 0.5)
+
+
+@compiled(inline=True)
+def pair_within(m: Model, k: int) -> int:
+    """Number of the pair with the k-th history that was within the cut-off then."""
+    return math.floor(m.work.within[k])
+
+
+@compiled(inline=True)
+def acts(m: Model, pair: PairState) -> bool:
+    """Whether a pair may have a force: within the cut-off, or until it has been seen to leave that."""
+    return bool(in_reach(m, pair.gap) or was_within(m, pair.k, pair.number))
+
+
 @compiled
 def contact_length(m: Model, inside: float) -> float:
     """Length of a contact of given gap, ``sqrt(R / pb)`` with R the reduced radius of two involutes; 1 of a roller."""

@@ -3,7 +3,7 @@ r"""Film of gas that two flanks squeeze out: a force against the rate of their g
 A pair of the gap g has the force :math:`-c(g)\,\dot g` with :math:`c = c_0 (g_0/(g + g_0))^3`, the law of Reynolds'
 equation for a film of the height :math:`g + g_0`; below a gap of zero the damping is :math:`c_0`. While a free flank of
 the mass m approaches, the rate v of its gap obeys
-:math:`m (v - v_a) = (c_0 g_0^3/2) ((g + g_0)^{-2} - (g_a + g_0)^{-2})`.
+:math:`m (v - v_a) = (c_0 g_0^3/2) ((g + g_0)^{-2} - (g_a + g_0)^{-2})`. At the cut-off the force jumps.
 """
 
 from __future__ import annotations
@@ -21,7 +21,6 @@ from gearidae.laws.pair_law import (
     PairForce,
     PairLaw,
     both_forces,
-    in_reach,
     of_gap,
 )
 
@@ -39,7 +38,7 @@ def _force(m: Model, t: float, y: Floats, pair: PairState, settling: bool, value
 
 
 class _Travel(NamedTuple):
-    """A variable x whose squared rate is the power that a film takes; both rates are 0 out of the film."""
+    """A variable x whose squared rate is the power that a film takes."""
 
     x: float
     rate: float
@@ -49,11 +48,9 @@ class _Travel(NamedTuple):
 @compiled
 def _travel(m: Model, at: GapMotion) -> _Travel:
     """Return x where the square root of the damping times the gap's rate is its rate: in closed form in the gap."""
-    least, height = m.scene.film_gap, m.scene.film_gap + min(max(at.gap, 0.0), m.scene.cutoff)
+    least, height = m.scene.film_gap, m.scene.film_gap + max(at.gap, 0.0)
     root = math.sqrt(m.scene.film_damping)
     x = root * (min(at.gap, 0.0) + 2.0 * least * (1.0 - math.sqrt(least / height)))
-    if not in_reach(m, at.gap):
-        return _Travel(x, 0.0, 0.0)
     root *= (least / height) ** 1.5
     bend = -1.5 * at.rate * at.rate / height if at.gap > 0.0 else 0.0
     return _Travel(x, root * at.rate, root * (bend + at.acceleration))
@@ -64,8 +61,6 @@ def _loss(
     m: Model, h: float, before: GapMotion, now: GapMotion, value: tuple[float, float]
 ) -> tuple[float, float]:
     a, b = _travel(m, before), _travel(m, now)
-    if a.rate == 0.0 and b.rate == 0.0:
-        return value
     loss, error = integral_of_square(h, b.x - a.x, Ends(a.rate, a.rate_rate, b.rate, b.rate_rate))
     return value[0] + loss, value[1] + error
 

@@ -272,20 +272,58 @@ def law_value(m: Model, shaft: int, t: float, angle: float, speed: float) -> flo
 
 @compiled
 def law_rate(m: Model, shaft: int, t: float, angle: float, speed: float, acceleration: float) -> float:
-    """Rate of change of `law_value` along the motion, by a central difference; one-sided where the run begins."""
-    low, high = _around(m, t)
+    """Rate of change of `law_value` along the motion, by a central difference; one-sided where the law begins or jumps.
+
+    Of a law that says nothing of its jumps, slopes to both sides that differ by more than half of the steeper show one.
+    """
+    low, high = _around(m, shaft, t, angle, speed, acceleration)
+    if high == low:
+        return 0.0
     before = law_value(m, shaft, low, *_moved(m, shaft, low - t, angle, speed, acceleration))
     after = law_value(m, shaft, high, *_moved(m, shaft, high - t, angle, speed, acceleration))
-    return (after - before) / (high - low)
+    rate = (after - before) / (high - low)
+    if m.scene.torque[shaft].law_unknown != 0 and low < t < high:
+        here = law_value(m, shaft, t, angle, speed)
+        back, ahead = (here - before) / (t - low), (after - here) / (high - t)
+        if abs(ahead - back) > 0.5 * max(abs(ahead), abs(back)):
+            rate = back if abs(back) < abs(ahead) else ahead
+    return rate
 
 
-@compiled(inline=True)
-def _around(m: Model, t: float) -> tuple[float, float]:
-    """Times to either side of a time, within the run and between two knots, for a difference of the law."""
+@compiled
+def _around(
+    m: Model, shaft: int, t: float, angle: float, speed: float, acceleration: float
+) -> tuple[float, float]:
+    """Times to either side of a time, in the run, between two knots and on one side of a switch, for a difference."""
     low, high = max(t - STEP, 0.0), t + STEP
     if m.work.law_until > 0.0:  # beyond, the law stays as it is there, and the difference would be too small
         low, high = max(low, m.work.law_from), min(high, m.work.law_until)
+    if m.work.torque_switch[shaft] != 0:
+        if not on_its_side(m, shaft, low, *_moved(m, shaft, low - t, angle, speed, acceleration)):
+            low = t
+        if not on_its_side(m, shaft, high, *_moved(m, shaft, high - t, angle, speed, acceleration)):
+            high = t
     return low, high
+
+
+@compiled
+def on_its_side(m: Model, shaft: int, t: float, angle: float, speed: float) -> bool:
+    """Whether a shaft's law has not yet switched since the beginning of the step."""
+    side = m.work.law_side[shaft]
+    return bool(side == 0.0 or side * switch_value(m, shaft, t, angle, speed) >= 0.0)
+
+
+@compiled
+def last_on_its_side(
+    m: Model, shaft: int, t: float, angle: float, speed: float, acceleration: float
+) -> tuple[float, float, float]:
+    """Time, angle and speed of a shaft at a time, or just before where its law has switched at that time.
+
+    A root lies just behind a zero of the law's function; what a step has done until there it has done before.
+    """
+    if m.work.torque_switch[shaft] == 0 or on_its_side(m, shaft, t, angle, speed):
+        return t, angle, speed
+    return t - STEP, *_moved(m, shaft, -STEP, angle, speed, acceleration)
 
 
 @compiled(inline=True)
@@ -308,7 +346,9 @@ def law_force_rate(
     m: Model, shaft: int, t: float, angle: float, speed: float, acceleration: float
 ) -> tuple[float, float]:
     """Rates of `law_force` along the motion [N/tau], as `law_rate`."""
-    low, high = _around(m, t)
+    low, high = _around(m, shaft, t, angle, speed, acceleration)
+    if high == low:
+        return 0.0, 0.0
     before = law_force(m, shaft, low, *_moved(m, shaft, low - t, angle, speed, acceleration))
     after = law_force(m, shaft, high, *_moved(m, shaft, high - t, angle, speed, acceleration))
     return (after[0] - before[0]) / (high - low), (after[1] - before[1]) / (high - low)

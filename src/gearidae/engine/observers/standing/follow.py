@@ -121,6 +121,7 @@ def resume(m: Model, t: float, y: Floats) -> None:
     s.way = sign
     if s.held != FREE and m.state.hold != s.held and m.state.hold != AT_REST:
         s.slip_time, s.slip_position = t * m.scene.time_unit, position
+        s.slip_from_rest = 1 if s.held == AT_REST or s.held == HELD_GEAR else 0
     s.held = m.state.hold
 
 
@@ -137,6 +138,14 @@ def _go_away(m: Model, last: Record, now: Record) -> None:
 
 
 @compiled(inline=True)
+def _slipped(m: Model) -> bool:
+    """Whether dry friction has let go of the gear since its last zero, near where it stood."""
+    s = m.state.standing
+    near = abs(s.slip_position - s.place) <= NEAR * m.scene.phase_rate
+    return bool(near and s.slip_time >= s.place_time and s.slip_time > 0.0)
+
+
+@compiled(inline=True)
 def _break_away(m: Model, t: float, position: float) -> tuple[float, float]:
     """When [s] and where the gear broke away that leaves half a pitch now.
 
@@ -144,8 +153,7 @@ def _break_away(m: Model, t: float, position: float) -> tuple[float, float]:
     there. Neither depends on how fast the torque rises, as the speed does.
     """
     s = m.state.standing
-    slipped = s.slip_time >= s.place_time and abs(s.slip_position - s.place) <= NEAR * m.scene.phase_rate
-    if slipped and s.slip_time > 0.0:
+    if _slipped(m):
         return s.slip_time, s.slip_position
     if s.near != 0:
         return t * m.scene.time_unit, position
@@ -206,7 +214,8 @@ def note_stood(m: Model, t: float, position: float) -> None:
     """Note a standstill that has ended: as the gear broke away, or as it began to move as free gears do."""
     s, i, length = m.state.standing, 0, m.scene.end * m.scene.time_unit
     limit, place = _break_away(m, t, position)
-    stood = standing_since(m, limit, place, length)
+    held = NEAR * m.scene.phase_rate if _slipped(m) and s.slip_from_rest != 0 else 0.0
+    stood = standing_since(m, limit, place, length, held)
     if stood >= 0:
         if s.zero[stood].spent == 0:
             z = s.zero[SPARE]
@@ -325,7 +334,7 @@ def _standing_zero(m: Model, t: float, position: float) -> int:
     if m.state.standing.zero_count == 0:
         return -1
     time = t * m.scene.time_unit
-    i = standing_since(m, time, position, time)
+    i = standing_since(m, time, position, time, 0.0)
     if i < 0:
         note_stood(m, t, position)
     return i

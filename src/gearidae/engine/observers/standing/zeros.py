@@ -202,9 +202,11 @@ def drop_left(m: Model, position: float) -> None:
 
 
 @compiled
-def standing_since(m: Model, time: float, position: float, length: float) -> int:
+def standing_since(m: Model, time: float, position: float, length: float, held: float) -> int:
     """First zero from which the gear stands until a time at a position, in a run of a length [s]; -1 if none.
 
+    A gear that dry friction has held until then, no farther than `held` from the zero [pb], has stood, whatever free
+    gears have done: under nearly the same load they may have just begun to move.
     `SPARE` is then that zero with its free gears at that time. The zeros stay as they are, because the gear may leave
     another one later whose standstill has ended earlier.
     """
@@ -216,7 +218,8 @@ def standing_since(m: Model, time: float, position: float, length: float) -> int
         z = s.zero[SPARE]
         follow_free(m, SPARE, time / m.scene.time_unit, math.inf)
         together = settles(z, time, position) == 2
-        if _stands(distance(z, position), free_advance(z, time), time - z.time, length, together):
+        way = distance(z, position)
+        if _stands(way, free_advance(z, time), time - z.time, length, together or way <= held):
             return i
     return -1
 
