@@ -20,6 +20,7 @@ from gearidae.analysis import record_checks
 from gearidae.analysis.assessment_words import (
     below_map,
     calibration_words,
+    gears_words,
     listed,
     lone_words,
     misfit,
@@ -325,7 +326,7 @@ def _read(fit: Fit, model: MapModel, rings: RingSet, silent: Assessment, rate: f
     if np.diff(possible).max(initial=0.0) > _GAP or high - low > _PLAIN:
         why = (
             f"impacts ring at {at} Hz, which SAM fractions from {low:.3f} to {high:.3f} explain alike; "
-            f"{what_would_tell(fit, model, rings)} can tell"
+            f"{what_would_tell(fit, model, rings)} can tell{gears_words(fit, model)}"
         )
         return replace(answer, verdict="ambiguous", explanation=why)
     fraction = float(fractions[fit.best])
@@ -340,7 +341,7 @@ def _read(fit: Fit, model: MapModel, rings: RingSet, silent: Assessment, rate: f
         return replace(answer, low=low, high=high, verdict="ambiguous", explanation=why)
     since = "counted from the start" if fit.history == "start" else "the start not being in the record"
     why = f"SAM fraction {fraction:.3f} (95 %: {low:.3f} to {high:.3f}); impacts ring at {at} Hz, {since}"
-    why += torque_words(fit, model, rings) + too_slow
+    why += torque_words(fit, model, rings) + gears_words(fit, model) + too_slow
     if low == fractions[0] > 0.0:
         why += "; the map ends there, and less could be left"
     return replace(answer, sam_fraction=fraction, verdict="clear", explanation=why)

@@ -76,6 +76,8 @@ def what_would_tell(fit: Fit, model: MapModel, rings: RingSet) -> str:
             f"the gear turns at {rings.speed:.3g} rad/s where the map has {expected:.3g} rad/s, so the torque is "
             "another; a map over drive.torque"
         )
+    if model.scatter is not None:
+        return "a map of these gears' own teeth (mesh.pinion_pitch_error, mesh.gear_pitch_error), or more impacts,"
     return "a record with more impacts, or from the start,"
 
 
@@ -92,6 +94,20 @@ def torque_words(fit: Fit, model: MapModel, rings: RingSet) -> str:
     )
 
 
+def gears_words(fit: Fit, model: MapModel) -> str:
+    """What the gears of a map over seeds, or the one drawing of another, mean for the answer."""
+    if model.one_draw:
+        return (
+            "; the map's teeth are one drawing (mesh.pitch_error_seed): that of other gears is in no interval"
+        )
+    if (scatter := model.scatter_at(float(fit.torques[fit.best]))) is None:
+        return ""
+    return (
+        f"; one gear of this design rings {100.0 * scatter.deviation()[fit.best]:.2g} % (standard deviation) off the "
+        f"mean of the map's {scatter.gears}, which the interval includes"
+    )
+
+
 def below_map(fit: Fit, model: MapModel, rings: RingSet) -> str:
     """Say so if all impacts ring lower than anything in the map, by more than the error that they share.
 
@@ -102,7 +118,12 @@ def below_map(fit: Fit, model: MapModel, rings: RingSet) -> str:
     expected = float(model.speeds[0, fit.best])
     explained = fit.explains and model.torques is None and expected > 0.0
     slower = min(1.0, rings.speed / expected) if explained else 1.0
-    if (rings.frequency >= lowest * slower * (1.0 - 3.0 * rings.common)).any():
+    common = rings.common
+    if (
+        scatter := model.scatter_at(float(fit.torques[-1]))
+    ) is not None:  # of the full coating, which rings lowest
+        common = math.hypot(common, float(scatter.deviation()[-1]))
+    if (rings.frequency >= lowest * slower * (1.0 - 3.0 * common)).any():
         return ""
     return (
         f"impacts ring at {listed(rings.frequency)} Hz, lower than anything in the map (from {lowest:.4g} Hz)"

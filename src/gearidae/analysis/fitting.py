@@ -19,6 +19,10 @@ map at one torque has no :math:`\tau`; there u may lie anywhere between 0 and
 :math:`\tfrac12\ln(\tau/\tau_{\mathrm{map}}) = \ln(\omega/\Omega_\varphi)`, because the frequency goes with the torque
 to a power between 0 (a worn contact, whose stiffness is that of its joined asperities) and 1/2 (a whole coating, whose
 stiffness goes with its load).
+
+Of a map over seeds, s and :math:`s_n` hold the scatter between the gears too, which depends on the fraction. Then
+:math:`\ln\det C` of the covariances joins :math:`\chi^2`, above its smallest value of all fractions: else the fraction
+that predicts least would explain most.
 """
 
 from __future__ import annotations
@@ -28,7 +32,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gearidae.analysis.map_model import BEFORE, MapModel
+from gearidae.analysis.map_model import BEFORE, MapModel, Scatter
 from gearidae.analysis.signal import CALIBRATION
 from gearidae.arrays import Floats
 
@@ -187,7 +191,9 @@ def _fit(model: MapModel, rings: RingSet, *, free: bool) -> Fit:
         torque = likeliest * math.exp(2.0 * spread * deviation)
         torque = float(np.clip(torque, model.torques[0], model.torques[-1]))
         sequences, uncertainty, speeds = model.at_torque(torque)
-        chi2, impacts = _chi_square_of(sequences, rings, np.zeros_like(speeds), uncertainty, free=free)
+        chi2, impacts = _chi_square_of(
+            sequences, rings, np.zeros_like(speeds), uncertainty, model.scatter_at(torque), free=free
+        )
         chi2 = chi2 + (np.log(rings.speed / speeds) / spread) ** 2
         better = chi2 < best.chi2
         best = Fit(
@@ -209,34 +215,80 @@ def _fit_at_known_torque(model: MapModel, rings: RingSet, *, free: bool) -> Fit:
     drifting = math.copysign(rings.unsteady, float(np.median(shift)) or 1.0)
     uneven = _UNEVEN * abs(float(np.median(shift)) + drifting)
     uncertainty = np.hypot(model.spread[0], math.hypot(uneven, rings.unsteady))
-    chi2, impacts = _chi_square_of(sequences, rings, shift, uncertainty, free=free)
+    scatter = model.scatter_at(math.nan)
+    chi2, impacts = _chi_square_of(sequences, rings, shift, uncertainty, scatter, free=free)
     history = "unknown" if free else "start"
     return Fit(model.fractions, chi2, impacts, history, np.full(len(chi2), np.nan))
 
 
 def _chi_square_of(
-    sequences: Floats, rings: RingSet, shift: Floats, uncertainty: Floats, *, free: bool
+    sequences: Floats,
+    rings: RingSet,
+    shift: Floats,
+    uncertainty: Floats,
+    scatter: Scatter | None,
+    *,
+    free: bool,
 ) -> tuple[Floats, int]:
     """Chi-square of every fraction, and the number of impacts compared.
 
     Impact n is compared with the map's n, or with its n + n0 with the best n0. `uncertainty` is the relative one of
-    what each fraction predicts for one impact, beside `_MODEL`.
+    what each fraction predicts for one impact, beside `_MODEL` and the scatter between gears.
     """
     numbers, x = rings.numbers, np.log(rings.frequency)
     variance = (rings.uncertainty / rings.frequency) ** 2 + _MODEL**2 + uncertainty[:, None] ** 2
     variance = variance + (_LATE * rings.calibration * (numbers - numbers[0])) ** 2
     if not free:
         kept = numbers + BEFORE < sequences.shape[1]
-        model = sequences[:, BEFORE + numbers[kept]]
-        chi2 = _chi_square(x[kept] - model, 1.0 / variance[:, kept], shift, rings.common)
-        return chi2, max(1, int(kept.sum()))
+        deviation, variance = x[kept] - sequences[:, BEFORE + numbers[kept]], variance[:, kept]
+        if scatter is None:
+            return _chi_square(deviation, 1.0 / variance, shift, rings.common), max(1, int(kept.sum()))
+        covariance = _covariance(scatter.of(numbers[kept]), variance, rings.common)
+        return _chi_square_of_gears(deviation[:, None], covariance, shift)[:, 0], max(1, int(kept.sum()))
     steps = numbers - numbers[0]
     kept = steps < sequences.shape[1]  # of a long record the first impacts are the ones that tell
     steps, x, variance = steps[kept], x[kept], variance[:, kept]
     furthest = sequences.shape[1] - 1 - int(steps[-1])
-    model = at_places(sequences, np.arange(furthest * _STEPS + 1) / _STEPS, steps)
-    chi2 = _chi_square(x - model, 1.0 / variance[:, None, :], shift[:, None], rings.common)
+    deviation = x - at_places(sequences, np.arange(furthest * _STEPS + 1) / _STEPS, steps)
+    if scatter is None:
+        chi2 = _chi_square(deviation, 1.0 / variance[:, None, :], shift[:, None], rings.common)
+    else:
+        covariance = _covariance(scatter.of(steps), variance, rings.common)
+        chi2 = _chi_square_of_gears(deviation, covariance, shift)
     return np.asarray(chi2.min(axis=1)), len(steps)
+
+
+def _covariance(scatter: Floats, variance: Floats, common: float) -> Floats:
+    """Covariance of what each fraction predicts, shape (n, m, m)."""
+    return scatter + common**2 + np.eye(variance.shape[1]) * variance[:, None, :]
+
+
+def _chi_square_of_gears(deviation: Floats, covariance: Floats, shift: Floats) -> Floats:
+    """Chi-square of correlated deviations, the best shift taken out, and how vague each fraction's prediction is.
+
+    Parameters
+    ----------
+    deviation : ndarray, shape (n, p, m)
+    covariance : ndarray, shape (n, m, m)
+    shift : ndarray, shape (n,)
+
+    Returns
+    -------
+    ndarray, shape (n, p)
+        With the logarithm of the determinant of the covariance, above the smallest of all fractions; infinite where the
+        map holds nothing.
+    """
+    if not deviation.shape[-1]:
+        return np.zeros(deviation.shape[:-1])
+    vagueness = np.linalg.slogdet(covariance)[1]
+    inverse = np.linalg.inv(covariance)
+    weighted = deviation @ inverse
+    squared, mean = (weighted * deviation).sum(axis=-1), weighted.sum(axis=-1)
+    total = inverse.sum(axis=(-2, -1))[:, None]
+    ends = np.minimum(shift, 0.0)[:, None], np.maximum(shift, 0.0)[:, None]
+    taken = np.clip(mean / total, *ends)
+    chi2 = squared - 2.0 * taken * mean + taken**2 * total + (vagueness - vagueness.min())[:, None]
+    return np.asarray(np.where(np.isnan(chi2), np.inf, chi2))
 
 
 def at_places(sequences: Floats, places: Floats, steps: np.ndarray) -> Floats:

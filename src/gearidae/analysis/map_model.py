@@ -16,8 +16,15 @@ from gearidae.errors import SceneError
 
 BEFORE, AFTER = 1, 6
 """Impacts by which the map's sequences are continued at both ends."""
+_MOST_ALIKE = 0.95
+"""Correlation of two impacts at most, where one covariance stands for all."""
 _GRID = 1001
 _INTERPOLATION = 0.4
+SEEDS = "seeds"
+"""Attribute of a map made over seeds: of how many gears each point is."""
+GEARS = "gear_frequency"
+"""Variable of such a map: frequencies of each gear."""
+FEWEST_GEARS = 5
 _TORQUE = "torque"
 """The one dimension beside the fraction that an assessment can estimate: that of ``drive.torque``."""
 _VARIABLES = (
@@ -28,6 +35,36 @@ _VARIABLES = (
     "median_gear_speed",
     "min_gear_speed",
 )
+
+
+@dataclass(frozen=True, slots=True)
+class Scatter:
+    """How far the frequencies of one gear are from those of a map over seeds.
+
+    Attributes
+    ----------
+    covariance : ndarray, shape (..., n, impacts, impacts)
+        Of the logarithms of the frequencies of the impacts of one gear.
+    gears : int
+        Of which the map is made.
+    """
+
+    covariance: Floats
+    gears: int
+
+    def of(self, impacts: np.ndarray) -> Floats:
+        """Covariance of some impacts, shape (..., n, k, k); beyond those of the map they are like the last two."""
+        last = self.covariance.shape[-1] - 1
+        at = np.minimum(impacts, last)
+        picked = self.covariance[..., at[:, None], at[None, :]]
+        twice = (at[:, None] == at[None, :]) & ~np.eye(len(at), dtype=bool)
+        alike = self.covariance[..., max(last - 1, 0), last] if last else 0.0 * self.covariance[..., 0, 0]
+        return np.asarray(np.where(twice, alike[..., None, None], picked))
+
+    def deviation(self) -> Floats:
+        """Largest standard deviation of the logarithm of a frequency at each fraction, shape (..., n)."""
+        variances = np.diagonal(self.covariance, axis1=-2, axis2=-1)
+        return np.asarray(np.sqrt(variances.max(axis=-1)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +93,10 @@ class MapModel:
         Angle from the start to the first impact [rad], roughly: time times median speed; NaN if the map lacks times.
     width : float
         Of the impact windows, in pitches.
+    scatter : Scatter, or None
+        Of a map over seeds, its covariance of shape (m or 1, n, impacts, impacts).
+    one_draw : bool
+        Whether the teeth of the map's gears have drawn errors, and the map is that of one drawing.
     """
 
     fractions: Floats
@@ -70,6 +111,15 @@ class MapModel:
     first_impact: float
     width: float
     gear_teeth: int
+    scatter: Scatter | None = None
+    one_draw: bool = False
+
+    def scatter_at(self, torque: float) -> Scatter | None:
+        """Scatter between the gears at one torque, that of the nearest line."""
+        if self.scatter is None:
+            return None
+        line = 0 if self.torques is None else int(np.abs(np.log(self.torques / torque)).argmin())
+        return Scatter(self.scatter.covariance[line], self.scatter.gears)
 
     def at_torque(self, torque: float) -> tuple[Floats, Floats, Floats]:
         """Sequences, their uncertainty and speeds at one torque, interpolated in its logarithm.
@@ -193,7 +243,66 @@ def map_model(chart: object) -> MapModel:
         first_impact=_first_impact(data),
         width=_width(data),
         gear_teeth=_gear_teeth(data),
+        scatter=_scatter(data, fractions),
+        one_draw=SEEDS not in data.attrs and _draws_teeth(data),
     )
+
+
+def _scatter(chart: xr.Dataset, fractions: Floats) -> Scatter | None:
+    """Scatter of a map over seeds on the grid; None of another map."""
+    if SEEDS not in chart.attrs:
+        return None
+    gears, known = int(chart.attrs[SEEDS]), chart["sam_fraction"].values
+    tables = np.log(chart[GEARS].transpose(_TORQUE, "sam_fraction", "gear", "impact").values)
+    lines = []
+    for line in tables:
+        points = np.stack([_covariance(table) for table in line])
+        rows = [np.interp(fractions, known, row) for row in points.reshape(len(known), -1).T]
+        lines.append(np.stack(rows, axis=1).reshape(len(fractions), *points.shape[1:]))
+    return Scatter(np.stack(lines), gears)
+
+
+def _covariance(table: Floats) -> Floats:
+    """Covariance of the logarithms of one further gear's frequencies, shape (impacts, impacts).
+
+    Parameters
+    ----------
+    table : ndarray, shape (gears, impacts)
+        Logarithms; NaN where a gear does not ring.
+
+    Returns
+    -------
+    ndarray
+        That of the gears, drawn towards one with the same variances and one covariance of all impacts, the more so the
+        fewer gears there are: the smallest eigenvalues of few gears are too small (Ledoit and Wolf 2004,
+        doi:10.1016/S0047-259X(03)00096-4). It is wider by what mean and variance of few gears are uncertain (the
+        variance of Student's distribution). Impacts that not all gears have are like the last that they have.
+    """
+    gears, impacts = table.shape
+    whole = table[:, : int(np.append(np.isfinite(table).all(axis=0), False).argmin())]
+    count = whole.shape[1]
+    if not count:
+        return np.zeros((impacts, impacts))
+    sample = np.atleast_2d(np.cov(whole, rowvar=False))
+    same = np.diag(np.diag(sample))
+    if count > 1:
+        apart = ~np.eye(count, dtype=bool)
+        same[apart] = max(float(sample[apart].mean()), 0.0)
+        # by rounding and by chance more than variances allow: no impacts are the same
+        limit = _MOST_ALIKE * np.sqrt(np.outer(np.diag(sample), np.diag(sample)))
+        same[apart] = np.minimum(same, limit)[apart]
+    weight = min(1.0, (count + 1) / gears)
+    estimate = (1.0 - weight) * sample + weight * same
+    estimate *= (1.0 + 1.0 / gears) * (gears - 1.0) / (gears - 3.0)
+    return Scatter(estimate, gears).of(np.arange(impacts))
+
+
+def _draws_teeth(chart: xr.Dataset) -> bool:
+    """Whether the scene of a map draws errors of teeth."""
+    try:
+        return bool(json.loads(chart.attrs["scene"])["mesh"].get("pitch_error_rms", 0.0) > 0.0)
+    except (AttributeError, KeyError, TypeError, ValueError):
+        return False
 
 
 def _torques(chart: xr.Dataset) -> Floats | None:

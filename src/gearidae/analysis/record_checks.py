@@ -322,11 +322,15 @@ def _image_of(model: MapModel, rings: RingSet, fit: Fit, rate: float, cutoff: fl
     if not kept.any():
         return math.nan
     misfit = np.full(len(fractions), np.inf)
+    scatter = model.scatter_at(torque)
+    uncertainty = rings.uncertainty[kept]
+    if scatter is not None:  # what a gear of the design shows is as uncertain by itself
+        uncertainty = np.hypot(uncertainty, scatter.deviation()[fit.best] * rings.frequency[kept])
     for shift in _shifts(model, rings):
         chi2, folded = _misfit_of_images(
             np.exp(predicted + shift[:, None, None]),
             rings.frequency[kept],
-            rings.uncertainty[kept],
+            uncertainty,
             rate,
             cutoff,
         )

@@ -18,8 +18,8 @@ from gearidae.runs.execution import Execution, SideBySide
 from gearidae.runs.run_cache import RunCache
 from gearidae.runs.running import failure_of
 from gearidae.scene.joints import ages
-from gearidae.scene.quantity import whole
 from gearidae.studies.declared.starting_torque import SEEDS, SLOW_ENOUGH, coordinate
+from gearidae.studies.specimens import POPULATION, gears_of, seeds_that_draw
 from gearidae.studies.starting_parts import PARTS, parts_of
 from gearidae.studies.starting_ramp import (
     RESTS,
@@ -44,7 +44,6 @@ if TYPE_CHECKING:
 log = logging.getLogger(__name__)
 
 QUANTILES: Final = (0.1, 0.5, 0.9)
-_MOST_SEEDS: Final = 10_000
 _HALVINGS: Final = 4
 """Times that the rate is halved at most."""
 _STAGES: Final = 4
@@ -146,7 +145,8 @@ def starting_torques(
     points, scenes
         Coverages or times, and the scene with each of them.
     seeds : int or None
-        Number of gears, whose seeds count from ``contact.seed`` on; None for `SEEDS`.
+        Number of gears, whose seeds of asperities, and of errors of teeth where they are drawn, count from the scene's
+        own on; None for `SEEDS`.
     execution : Execution
 
     Raises
@@ -154,17 +154,16 @@ def starting_torques(
     SceneError
         If a setting is not allowed.
     """
-    count = whole("seeds", SEEDS if seeds is None else seeds, 1, _MOST_SEEDS)
-    numbers = range(base.contact.seed, base.contact.seed + count)
+    gears = gears_of(base, SEEDS if seeds is None else seeds)
 
     def work(kept: RunCache | None) -> xr.Dataset:
-        designs = [_Design(scene, [seated(scene, seed) for seed in numbers]) for scene in scenes]
-        usual = _STAGES * count * len(designs)
+        designs = [_Design(scene, [seated(scene, gear) for gear in gears]) for scene in scenes]
+        usual = _STAGES * len(gears) * len(designs)
         with execution.side_by_side(kept, usual) as compute:
             _find_all(designs, _Runs(compute))
-        return _dataset(base, study, points, numbers, designs)
+        return _dataset(base, study, points, [gear[POPULATION] for gear in gears], designs)
 
-    return study.compute(execution, base, work, [study.kind, list(points), count])
+    return study.compute(execution, base, work, [study.kind, list(points), len(gears)])
 
 
 def _find_all(designs: Sequence[_Design], runs: _Runs) -> None:
@@ -236,7 +235,7 @@ def _dataset(
     axes["part"] = np.array(PARTS)
     values = {name: np.asarray(column) for name, column in _columns(designs).items()}
     attributes = {
-        **provenance(base, "found starting torques of a population", swept=("contact.seed",)),
+        **provenance(base, "found starting torques of a population", swept=seeds_that_draw(base)),
         "title": f"{base.name}: starting torque of {len(numbers)} gears",
         "summary": _SUMMARY,
         "drive_torque": base.drive.torque,

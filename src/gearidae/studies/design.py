@@ -23,6 +23,7 @@ from gearidae.runs.sweep_plan import MOST_RUNS
 from gearidae.scene.group import shorten
 from gearidae.scene.quantity import whole
 from gearidae.studies.distributions import Distribution, read_distributions
+from gearidae.studies.specimens import NEEDS, seeds_that_draw
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -158,19 +159,12 @@ def drawn_distributions(scene: Scene, vary: Mapping[str, Any]) -> tuple[Distribu
     """
     if not isinstance(vary, Mapping) or not any(key in vary for key in SEED_KEYS):
         return read_distributions(scene, vary)
-    draws_errors = scene.mesh is not None and scene.mesh.pitch_error_rms > 0.0
-    needs = {
-        "contact.seed": (
-            scene.contact.is_discrete,
-            'needs contact.roughness = "discrete": statistical ones draw nothing',
-        ),
-        "mesh.pitch_error_seed": (draws_errors, "needs mesh.pitch_error_rms above 0: nothing is drawn else"),
-    }
-    for key, (is_drawn, allowed) in needs.items():
+    drawing = seeds_that_draw(scene)
+    for key, allowed in NEEDS.items():
         if key in vary and vary[key] != SEEDS:
             numbered = f'must be "{SEEDS}": the seeds of the members are numbered from the scene\'s own on'
             raise SceneError(key, shorten(vary[key]), numbered)
-        if key in vary and not is_drawn:
+        if key in vary and key not in drawing:
             raise SceneError(key, vary[key], allowed)
     others = {key: text for key, text in vary.items() if key not in SEED_KEYS}
     return read_distributions(scene, others) if others else ()

@@ -7,6 +7,7 @@ torque lays the flanks together until the motion has died; then the torque of th
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final, NamedTuple
 
@@ -21,6 +22,7 @@ from gearidae.mesh.pair_contact import asperity_stiffness
 from gearidae.populations.first_touch import first_touch
 from gearidae.runs.estimates import effective_mass
 from gearidae.runs.running import FAILS, solve_to_end, unfinished, unsolved
+from gearidae.studies.specimens import POPULATION
 from gearidae.studies.starting_parts import WITHOUT_FLANKS, Starting
 
 if TYPE_CHECKING:
@@ -100,11 +102,12 @@ def least_damping(scene: GearScene) -> float:
     return max(number_of_mesh(scene, "damping"), DAMPING * critical)
 
 
-def seated(scene: GearScene, seed: int) -> GearScene:
-    """Scene of a gear at rest, about to touch, at the place that its seed draws."""
+def seated(scene: GearScene, seeds: Mapping[str, int]) -> GearScene:
+    """Scene of a gear at rest, about to touch, at the place that its ``contact.seed`` draws."""
+    seed = seeds[POPULATION]
     at = scene.replace(
         {
-            "contact.seed": seed,
+            **seeds,
             "initial.mesh_phase": place_of_seed(scene, seed),
             "initial.gear_speed": 0.0,
             "mesh.damping": least_damping(scene),

@@ -8,7 +8,7 @@ Finished runs are kept beside the map, in MAP.nc.journal, until the map is writt
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, Final, Unpack
 
 import numpy as np
@@ -16,7 +16,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from gearidae.analysis.impacts import WIDTH, check_width
-from gearidae.analysis.map_model import require_map
+from gearidae.analysis.map_model import FEWEST_GEARS, GEARS, SEEDS, require_map
 from gearidae.analysis.ringing import characteristic_frequency, impact_frequencies
 from gearidae.archive import dimension_names
 from gearidae.archive.provenance import provenance
@@ -31,6 +31,7 @@ from gearidae.scene.keys import scene_value
 from gearidae.scene.pairs import sweep_values
 from gearidae.scene.prefixes import with_prefix
 from gearidae.studies.announcement import grid_words
+from gearidae.studies.specimens import gears_of
 from gearidae.studies.study import Call, Column, Option, Picture, Rows, Study
 
 if TYPE_CHECKING:
@@ -62,6 +63,7 @@ def coating_map(
     *,
     over: Mapping[str, Iterable[Any]] | str | None = None,
     width: float = WIDTH,
+    seeds: int | None = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
     """Characteristic frequency against SAM fraction (Teodorescu et al. 2009, Fig. 10).
@@ -81,6 +83,10 @@ def coating_map(
         where the torque of a record is not known.
     width : float, optional
         Of the impact windows, in pitches, see `impact_windows`.
+    seeds : int, optional
+        Gears of the design that each point is made of, 5 or more: with seeds of errors of teeth
+        (``mesh.pitch_error_rms``), of discrete asperities, or of both, numbered from the scene's own on. The map is
+        then that of a gear that has not been measured itself: the scatter between the gears widens what `assess` says.
     **options
         ``executor``, ``jobs``, ``backend``, ``progress``, ``archive``, ``overwrite`` and ``resume``, as for `sweep`.
 
@@ -92,6 +98,9 @@ def coating_map(
         ``min_gear_speed`` [rad/s]. NaN where nothing rings, where the contact rings faster than the samples show
         (the attribute ``note`` says so), and of a run that could not be finished, which says so in
         its ``status`` and ``message``. The scene and how it was made are attributes.
+
+        With `seeds` frequencies are geometric means over the gears, NaN where fewer than half of them ring, and
+        ``gear_frequency`` [Hz] has those of each gear, dims (..., sam_fraction, impact, gear).
 
     Raises
     ------
@@ -112,29 +121,48 @@ def coating_map(
     width = check_width(width)
     keys = further_keys(scene, over)
     execution = Execution(**options, method=scene.run.method)
-    plans = _plans(scene, fractions, keys, execution.backend)
+    gears = [{}] if seeds is None else _gears(scene, seeds)
+    plans = _plans(scene, fractions, keys, gears, execution.backend)
     numbers = {key: [_number(scene, key, value) for value in listed] for key, listed in keys.items()}
 
     def work(kept: RunCache | None) -> xr.Dataset:
         # one line at a time: what is kept of a run is a few numbers of some megabytes
-        lines = [_line(run_plan(plan, execution, kept), width) for plan in plans]
-        notes = [line.attrs for line in lines if "note" in line.attrs]
+        every = [_line(run_plan(plan, execution, kept), width) for plan in plans]
+        notes = [line.attrs for line in every if "note" in line.attrs]
+        lines = every
+        if seeds is not None:
+            lines = [_of_gears(every[first : first + seeds]) for first in range(0, len(every), seeds)]
         return _assembled(lines, numbers).assign_attrs(
-            _attributes(scene, (_FRACTION, *keys), {**lines[0].attrs, **(notes[0] if notes else {})})
+            _attributes(scene, (_FRACTION, *keys), {**every[0].attrs, **(notes[0] if notes else {})}),
+            **({} if seeds is None else {SEEDS: seeds}),
         )
 
     scenes = [run for plan in plans for run in plan.scenes]
     settings = {_FRACTION: fractions, **numbers, "width": width}
+    settings |= {} if seeds is None else {SEEDS: seeds}
     return STUDY.compute(execution, plans[0].base, work, settings, origin=scene, scenes=scenes)
 
 
+def _gears(scene: Scene, seeds: int) -> Sequence[Mapping[str, int]]:
+    """Seeds of the gears of a map."""
+    if len(gears := gears_of(scene, seeds)) < FEWEST_GEARS:
+        raise SceneError(
+            "seeds", seeds, f"must be {FEWEST_GEARS} or more, for a scatter that is known by half"
+        )
+    return gears
+
+
 def _plans(
-    scene: Scene, fractions: list[float], keys: Mapping[str, list[Any]], backend: str
+    scene: Scene,
+    fractions: list[float],
+    keys: Mapping[str, list[Any]],
+    gears: Sequence[Mapping[str, int]],
+    backend: str,
 ) -> list[SweepPlan]:
-    """Plan the runs of each line of the map, before any of them is run."""
+    """Plan the runs of each line of the map, gear by gear, before any of them is run."""
     plans = []
-    for values in itertools.product(*keys.values()):
-        changes = dict(zip(keys, values, strict=True))
+    for values, gear in itertools.product(itertools.product(*keys.values()), gears):
+        changes = dict(zip(keys, values, strict=True)) | gear
         base = prepare(
             scene.replace(changes) if changes else scene, rtol=None, t_end=None, samples=None, backend=backend
         )
@@ -195,6 +223,41 @@ def _line(runs: xr.Dataset, width: float) -> xr.Dataset:
     return line.where(finished).assign({name: runs[name] for name in ("status", "message")})
 
 
+def _of_gears(lines: list[xr.Dataset]) -> xr.Dataset:
+    """One line of a map of the same line of several gears."""
+    gears = xr.concat(lines, dim="gear", join="outer", combine_attrs="drop_conflicts")
+    count = len(lines)
+    logarithm, first = (_log(gears[name]) for name in ("impact_frequency", "characteristic_frequency"))
+    rings, first_rings = (2 * values.notnull().sum("gear") >= count for values in (logarithm, first))
+    speeds = gears[["median_gear_speed", "min_gear_speed", "impact_time"]].mean("gear", keep_attrs=True)
+    speeds["min_gear_speed"] = gears["min_gear_speed"].min("gear", keep_attrs=True)
+    unfinished = gears["status"].values != "finished"
+    worst = xr.DataArray(unfinished.argmax(axis=0), dims="sam_fraction")
+    means = {
+        "characteristic_frequency": _exp(first.mean("gear")).where(first_rings),
+        "uncertainty": np.sqrt((gears["uncertainty"] ** 2).mean("gear")),
+        "impact_frequency": _exp(logarithm.mean("gear")).where(rings),
+        "impact_uncertainty": np.sqrt((gears["impact_uncertainty"] ** 2).mean("gear")).where(rings),
+    }
+    means = {name: mean.assign_attrs(gears[name].attrs) for name, mean in means.items()}
+    every = gears["impact_frequency"].transpose("sam_fraction", "impact", "gear").values
+    return (
+        xr.Dataset(means | dict(speeds), attrs=lines[0].attrs)
+        .assign(STUDY.dataset({GEARS: every, "gear": np.arange(count)}, {}))
+        .assign({name: gears[name].isel(gear=worst) for name in ("status", "message")})
+    )
+
+
+def _log(values: xr.DataArray) -> xr.DataArray:
+    """Logarithm of frequencies, with their dimensions."""
+    return values.copy(data=np.log(values.values))
+
+
+def _exp(values: xr.DataArray) -> xr.DataArray:
+    """Frequencies of their logarithms."""
+    return values.copy(data=np.exp(values.values))
+
+
 def _number(scene: Scene, key: str, value: Any) -> Any:
     """A swept value in SI units, as the scene holds it."""
     return scene_value(scene.replace({key: value}), key)
@@ -216,7 +279,7 @@ def _assembled(lines: list[xr.Dataset], keys: Mapping[str, list[Any]]) -> xr.Dat
             )
             for name, variable in joined.transpose("line", ...).data_vars.items()
         },
-        coords={name: joined[name].variable for name in ("sam_fraction", "impact")},
+        coords={name: joined[name].variable for name in ("sam_fraction", "impact", "gear") if name in joined},
     )
     for key, name in names.items():
         info = describe_key(key)
@@ -247,6 +310,12 @@ def _call(
             completes="keys",
         ),
     ] = None,
+    seeds: Annotated[
+        int | None,
+        Option(
+            "Gears of each point, with seeds of errors of teeth and of asperities from the case's own on."
+        ),
+    ] = None,
 ) -> Call:
     values = sweep_values([pair for pair in over or [] if pair.strip() != _TORQUE])
     fractions = values.pop(_FRACTION, FRACTIONS.tolist())
@@ -256,9 +325,13 @@ def _call(
     further = _TORQUE if usual_torques else values
 
     def announcement(scene: Scene, workers: int | None) -> str:
-        return grid_words(scene, {_FRACTION: fractions} | further_keys(scene, further), workers)
+        gears: dict[str, list[Any]] = {}
+        if seeds is not None:
+            drawn = gears_of(scene, seeds)  # one key stands for all seeds of a gear
+            gears = {key: [gear[key] for gear in drawn] for key in list(drawn[0])[:1]}
+        return grid_words(scene, {_FRACTION: fractions} | further_keys(scene, further) | gears, workers)
 
-    return Call((fractions,), {"over": further}, announcement)
+    return Call((fractions,), {"over": further, "seeds": seeds}, announcement)
 
 
 def _sentence(ds: xr.Dataset) -> str:
@@ -268,13 +341,19 @@ def _sentence(ds: xr.Dataset) -> str:
         return note.strip() or "Nothing rings at any coverage."
     low, high = (with_prefix(float(f(frequency)), "Hz", 4) for f in (np.nanmin, np.nanmax))
     ends = [f"{100.0 * float(f(ds['sam_fraction'])):.4g} %" for f in (np.max, np.min)]
-    return f"From SAM {ends[0]} to {ends[1]} the teeth ring at {low} to {high}.{note}"
+    gears = ""
+    if SEEDS in ds.attrs:
+        scatter = _log(ds[GEARS].isel(impact=0)).std("gear", ddof=1)
+        least, most = (100.0 * float(f(scatter)) for f in (np.nanmin, np.nanmax))
+        gears = f" One of {ds.attrs[SEEDS]} gears is {least:.2g} to {most:.2g} % from their mean (standard deviation)."
+    return f"From SAM {ends[0]} to {ends[1]} the teeth ring at {low} to {high}.{gears}{note}"
 
 
 def _rows(ds: xr.Dataset) -> Rows:
     """Frequencies at some of the fractions, line by line."""
     # without the impacts, of which there may be none
-    ds = ds[["characteristic_frequency", "uncertainty", "min_gear_speed"]]
+    gears = [GEARS] if SEEDS in ds.attrs else []
+    ds = ds[["characteristic_frequency", "uncertainty", "min_gear_speed", *gears]]
     further = [dim for dim in ds["characteristic_frequency"].dims if dim != "sam_fraction"]
     lines = ds.stack(line=further) if further else ds.expand_dims("line")
     count = ds.sizes["sam_fraction"]
@@ -289,6 +368,9 @@ def _rows(ds: xr.Dataset) -> Rows:
             text = f"{value:.0f} +- {spread:.0f} Hz" if np.isfinite(value) else "-"
             slowest = float(point["min_gear_speed"])
             remark = "" if slowest > 0.0 else "the gear stops within the run"
+            if gears and slowest > 0.0 and np.isfinite(value):
+                apart = float(_log(point[GEARS].isel(impact=0)).std("gear", ddof=1))
+                remark = f"between gears {100.0 * apart:.2g} %"
             if np.isnan(slowest):
                 remark = "its run could not be finished"
             yield f"SAM {100 * float(point['sam_fraction']):g} %", text, remark
@@ -309,6 +391,12 @@ STUDY = Study(
         "impact_time": Column(("sam_fraction", "impact"), "s", "time of the impact"),
         "median_gear_speed": Column(("sam_fraction",), "rad s-1", "median speed of the gear"),
         "min_gear_speed": Column(("sam_fraction",), "rad s-1", "smallest speed of the gear"),
+        GEARS: Column(
+            ("sam_fraction", "impact", "gear"), "Hz", "frequency of each impact of each gear", required=False
+        ),
+        "gear": Column(
+            ("gear",), "1", "number of the gear, from 0 for the scene's own seeds", required=False
+        ),
     },
     check=require_map,
     sentence=_sentence,

@@ -8,7 +8,7 @@ from __future__ import annotations
 import logging
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Annotated, Any, Unpack
 
 import numpy as np
@@ -16,7 +16,7 @@ import xarray as xr
 
 from gearidae.analysis.verdict.judge import is_scheduled
 from gearidae.archive.provenance import provenance
-from gearidae.errors import SceneError
+from gearidae.errors import SceneError, SolverError
 from gearidae.runs.execution import RunOptions, SideBySide, prepared
 from gearidae.runs.run_cache import RunCache
 from gearidae.runs.sweep_plan import values_of
@@ -25,6 +25,7 @@ from gearidae.scene.keys import find_key
 from gearidae.scene.pairs import sweep_values
 from gearidae.scene.quantity import number, whole
 from gearidae.studies.bracket import bracket
+from gearidae.studies.specimens import gears_of, seed_of, seeds_that_draw
 from gearidae.studies.study import Call, Column, Option, Picture, Rows, Study
 from gearidae.studies.threshold_run import ThresholdRun, run_until, value_of
 
@@ -51,6 +52,7 @@ def sticking_threshold(
     exits: int = 100,
     *,
     width: float | None = None,
+    seeds: int | None = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
     """Value of a key at which the gear begins to stick, against the number of mesh exits waited for.
@@ -68,6 +70,9 @@ def sticking_threshold(
         Mesh exits to wait for.
     width : float, optional
         Width at which a bracket is narrow enough, in the key's SI unit; by default 1/256 of that of `between`.
+    seeds : int, optional
+        Gears of one design, each with a limit of its own: with seeds of errors of teeth (``mesh.pitch_error_rms``), of
+        discrete asperities, or of both, numbered from the scene's own on.
     **options
         ``executor``, ``jobs``, ``backend``, ``progress``, ``archive``, ``overwrite`` and ``resume``, as for `sweep`.
         With ``archive``, finished runs are kept beside it until it is written.
@@ -81,6 +86,11 @@ def sticking_threshold(
         ``exits_passed`` until it stuck or its time was over, ``stick_time`` (NaN if it has not stuck) and
         ``simulated_time``. A gear that still moves when the time is over counts only for the exits that it has passed.
         Runs that could not be finished are left out; ``left_out`` counts them. The log names both.
+
+        With `seeds` the brackets are along ``seed`` too, with the ``mean`` of the limits along ``exits`` and the
+        ``deviation`` of one gear from it (standard deviation), both of the gears that have stuck so early, which
+        ``stuck`` counts; ``gear`` tells the seed of each run. A gear that does alike at both ends has no limit; its
+        ``message`` says so.
 
     Raises
     ------
@@ -114,17 +124,71 @@ def sticking_threshold(
     waits = [*(number for number in _USUAL if number < exits), exits]
     rounds = 1 + math.ceil(math.log(abs(ends[1] - ends[0]) / width, _PARTS))
     most = 2 + (_PARTS - 1) * rounds * len(waits)
-    runs: list[ThresholdRun] = []
+    settings: list[Any] = [over, *ends, exits, width]
+    if seeds is None:
+        runs: list[ThresholdRun] = []
 
-    def so_far() -> xr.Dataset:
-        return _dataset(scene, over, runs, waits, ends, width)
+        def so_far() -> xr.Dataset:
+            return _dataset(scene, over, runs, waits, ends, width)
 
-    def work(kept: RunCache | None) -> xr.Dataset:
-        with execution.side_by_side(kept, most) as compute:
-            _search(_Pool(base, over, exits, compute, runs), ends, waits, width)
-        return so_far()
+        def work(kept: RunCache | None) -> xr.Dataset:
+            with execution.side_by_side(kept, most) as compute:
+                _search(_Pool(base, over, exits, compute, runs), ends, waits, width)
+            return so_far()
 
-    return STUDY.compute(execution, base, work, [over, *ends, exits, width], origin=scene, so_far=so_far)
+        return STUDY.compute(execution, base, work, settings, origin=scene, so_far=so_far)
+    gears = [_Gear(base.replace(gear)) for gear in gears_of(base, seeds)]
+
+    def gears_so_far() -> xr.Dataset:
+        found = [_dataset(gear.scene, over, gear.runs, waits, ends, width) for gear in gears]
+        return _dataset_of_gears(scene, over, gears, found)
+
+    def work_on_gears(kept: RunCache | None) -> xr.Dataset:
+        with execution.side_by_side(kept, most * len(gears)) as compute:
+            _search_gears(gears, over, exits, compute, ends, waits, width)
+        return gears_so_far()
+
+    return GEARS.compute(
+        execution, base, work_on_gears, [GEARS.kind, *settings, seeds], origin=scene, so_far=gears_so_far
+    )
+
+
+@dataclass
+class _Gear:
+    """One gear of a design: its scene, its runs so far, and why it has no limit."""
+
+    scene: GearScene
+    runs: list[ThresholdRun] = field(default_factory=list)
+    message: str = ""
+
+
+def _search_gears(
+    gears: Sequence[_Gear],
+    over: str,
+    exits: int,
+    compute: SideBySide,
+    ends: tuple[float, float],
+    waits: Sequence[int],
+    width: float,
+) -> None:
+    """Search the limits of one gear after the other; one without a limit does not end the search."""
+    for gear in gears:
+        try:
+            _search(_Pool(gear.scene, over, exits, compute, gear.runs), ends, waits, width)
+        except _NoLimitError as error:
+            gear.message = str(error)
+            log.warning("the gear of seed %d has no limit: %s", seed_of(gear.scene), error)
+        except SolverError as error:
+            gear.message = str(error)
+            log.warning("the gear of seed %d is left out: %s", seed_of(gear.scene), error)
+    if all(gear.message for gear in gears):
+        raise SceneError(
+            "between", list(ends), f"no gear has a limit there; the last one: {gears[-1].message}"
+        )
+
+
+class _NoLimitError(SceneError):
+    """A gear does alike at both ends, or is slow at one."""
 
 
 @dataclass
@@ -200,12 +264,12 @@ def _check_ends(pool: _Pool, ends: tuple[float, float]) -> None:
             raise run.failure
         if run.slow:
             allowed = f"must be values at which it sticks or passes: {run.slow_in_words(pool.exits)}"
-            raise SceneError("between", list(ends), allowed)
+            raise _NoLimitError("between", list(ends), allowed)
     if (first.passed < pool.exits) == (second.passed < pool.exits):
         what = "sticks" if first.passed < pool.exits else "passes them"
         passed = f"{first.passed} and {second.passed} mesh exits"
         allowed = f"must have one end at which the gear sticks within {pool.exits} exits: at both it {what} ({passed})"
-        raise SceneError("between", list(ends), allowed)
+        raise _NoLimitError("between", list(ends), allowed)
 
 
 def _dataset(
@@ -242,6 +306,36 @@ def _dataset(
     return STUDY.dataset(values, attributes, over=over, unit=find_key(type(scene), over).unit or "1")
 
 
+def _dataset_of_gears(
+    scene: Scene, over: str, gears: Sequence[_Gear], found: Sequence[xr.Dataset]
+) -> xr.Dataset:
+    """Put the brackets and runs of all gears together."""
+    seeds = [seed_of(gear.scene) for gear in gears]
+    brackets = {name: np.stack([one[name].values for one in found]) for name in ("limit", "sticks", "passes")}
+    stuck = np.isfinite(brackets["limit"])
+    limits = [column[here] for column, here in zip(brackets["limit"].T, stuck.T, strict=True)]
+    values = {
+        "exits": found[0]["exits"].values,
+        "seed": np.array(seeds),
+        **brackets,
+        "mean": np.array([column.mean() if column.size else np.nan for column in limits]),
+        "deviation": np.array([column.std(ddof=1) if column.size > 1 else np.nan for column in limits]),
+        "stuck": stuck.sum(axis=0),
+        "message": np.array([gear.message for gear in gears]),
+        "gear": np.repeat(seeds, [one.sizes["run"] for one in found]),
+    }
+    along = ("value", "exits_passed", "stick_time", "simulated_time")
+    values |= {name: np.concatenate([one[name].values for one in found]) for name in along}
+    attributes = {
+        **found[0].attrs,
+        **provenance(scene, "searched sticking thresholds", swept=(over, *seeds_that_draw(scene))),
+        "title": f"{scene.name}: sticking thresholds of {len(gears)} gears",
+        "summary": f"Limits of {over} at which gears of one design begin to stick, against mesh exits waited for.",
+        "left_out": sum(int(one.attrs["left_out"]) for one in found),
+    }
+    return GEARS.dataset(values, attributes, over=over, unit=find_key(type(scene), over).unit or "1")
+
+
 def _ends(scene: Scene, over: str, between: tuple[Any, Any]) -> tuple[float, float]:
     """Both ends in SI units."""
     if len(between) != 2:
@@ -271,6 +365,12 @@ def _call(
         str, Option("Key and two values: the gear sticks at one of them, coating.sam_fraction=0.4,0.7.")
     ],
     exits: Annotated[int, Option("Mesh exits to wait for.")] = 100,
+    seeds: Annotated[
+        int | None,
+        Option(
+            "Gears of the design, with seeds of errors of teeth and of asperities from the case's own on."
+        ),
+    ] = None,
 ) -> Call:
     ((key, ends),) = sweep_values([over]).items()
     if len(ends) != 2 or ends[0] == ends[1]:
@@ -278,7 +378,9 @@ def _call(
             "--over", over, f"needs two different values, at one of which the gear sticks: {key}=0.4,0.7"
         )
     words = f"{key} between {ends[0]} and {ends[1]}, for up to {exits} mesh exits"
-    return Call((key, (ends[0], ends[1]), exits), announcement=words)
+    if seeds is not None:
+        words += f", of {seeds} gears"
+    return Call((key, (ends[0], ends[1]), exits), {"seeds": seeds}, announcement=words)
 
 
 def _sentence(ds: xr.Dataset) -> str:
@@ -301,6 +403,51 @@ def _rows(ds: xr.Dataset) -> Rows:
             continue
         sticks, passes = _ends_in_words(point)
         yield waited, _number(float(point["limit"]), point), f"sticks at {sticks}, passes at {passes}"
+    left_out = int(ds.attrs.get("left_out", 0))
+    yield "runs", str(ds.sizes["run"]), f"{left_out} more could not be finished" if left_out else ""
+
+
+def _gears_sentence(ds: xr.Dataset) -> str:
+    key, point = _key(ds), ds.isel(exits=-1)
+    exits, count = int(ds["exits"][-1]), int(point["stuck"])
+    if not count:
+        return f"No gear has stuck within {exits} mesh exits so far."
+    return (
+        f"Within {exits} mesh exits {count} of {ds.sizes['seed']} gears stick, at {key} = {_spread(point)}."
+    )
+
+
+def _spread(point: xr.Dataset) -> str:
+    """Say the mean limit with its standard error, and that of single gears."""
+    limits, unit = point["limit"].values, str(point["limit"].attrs["units"])
+    limits = limits[np.isfinite(limits)]
+    unit = "" if unit == "1" else f" {unit}"
+    if limits.size < 2:
+        return f"{float(point['mean']):.4g}{unit}"
+    one = float(point["deviation"])
+    mean = f"{float(point['mean']):.4g} +- {one / math.sqrt(limits.size):.2g}{unit}"
+    return f"{mean} (one gear +- {one:.2g}, from {limits.min():.4g} to {limits.max():.4g})"
+
+
+def _gears_rows(ds: xr.Dataset) -> Rows:
+    """Mean limit for each number of exits, and the limit of each gear for the largest."""
+    yield f"Sticking limit of {_key(ds)}, mean of the gears", "", ""
+    for place in range(ds.sizes["exits"]):
+        point = ds.isel(exits=place)
+        exits, count = int(point["exits"]), int(point["stuck"])
+        waited = f"within {exits} mesh exit{'s' if exits > 1 else ''}"
+        if not count:
+            yield waited, "-", "no gear has stuck so early"
+            continue
+        value, _, rest = _spread(point).partition(" (")
+        remark = rest.rstrip(")")
+        yield waited, value, f"{count} of {ds.sizes['seed']} gears" + (f"; {remark}" if remark else "")
+    last = ds.isel(exits=-1)
+    for seed in ds["seed"].values.tolist():
+        gear = last.sel(seed=seed)
+        limit, message = float(gear["limit"]), str(gear["message"].values)
+        value = "-" if math.isnan(limit) else _number(limit, gear)
+        yield f"gear of seed {seed}", value, message
     left_out = int(ds.attrs.get("left_out", 0))
     yield "runs", str(ds.sizes["run"]), f"{left_out} more could not be finished" if left_out else ""
 
@@ -365,28 +512,121 @@ def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     return ax
 
 
+def picture_of_gears(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
+    """Draw the limits at which gears of one design begin to stick against the mesh exits waited for, and their mean.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        From `gearidae.studies.sticking_threshold` with seeds.
+    ax : matplotlib Axes, optional
+        Where to draw; by default in a figure of its own.
+
+    Returns
+    -------
+    Axes
+        With a line for each gear, and bars of one standard deviation of a gear at the mean.
+
+    Raises
+    ------
+    SceneError
+        If the dataset is something else, or no gear has stuck.
+    """
+    from gearidae.drawing.parameter_axis import parameter_axis
+    from gearidae.drawing.style import line_colour, line_width, new_axes, tidy
+
+    GEARS.require(ds)
+    ax = new_axes(ax, height=3.8)
+    ds = ds.isel(exits=ds["stuck"].values > 0)
+    if not ds.sizes["exits"]:
+        raise SceneError("plot", "sticking_thresholds", "no gear has stuck")
+    exits = ds["exits"].values
+    together = xr.concat([*(ds["limit"].drop_attrs().drop_vars("seed")), ds["mean"].drop_attrs()], "line")
+    along = parameter_axis(together.rename(_key(ds).rpartition(".")[2]).assign_attrs(ds["limit"].attrs))
+    *gears, mean = along.places
+    lines = ax.plot(exits, np.transpose(gears), color="0.7", marker=".", linewidth=line_width(0.7))
+    lines[0].set_label(f"{len(gears)} gears")
+    colour = line_colour(0)
+    ax.errorbar(
+        exits,
+        mean,
+        yerr=along.factor * np.nan_to_num(ds["deviation"].values),
+        color=colour,
+        marker="o",
+        markersize=4,
+        capsize=3,
+        linewidth=line_width(1.2),
+        label="mean, and one gear",
+    )
+    ax.set_xscale("log")
+    ax.set_xticks(exits, [str(number) for number in exits])
+    ax.minorticks_off()
+    ax.set_xlabel("mesh exits waited for")
+    ax.set_ylabel(along.label)
+    tidy(ax)
+    ax.margins(x=0.05)
+    ax.legend(frameon=False, fontsize="small")
+    return ax
+
+
+_RUN_COLUMNS = {
+    "value": Column(("run",), "{unit}", "{over}", required=False),
+    "exits_passed": Column(
+        ("run",), "1", "mesh exits until the gear stuck, or the run was over", required=False
+    ),
+    "stick_time": Column(("run",), "s", "when the gear stuck", required=False),
+    "simulated_time": Column(("run",), "s", "simulated time", required=False),
+}
+
+
+def _brackets(dims: tuple[str, ...]) -> dict[str, Column]:
+    """Columns of brackets against the exits."""
+    return {
+        "exits": Column(("exits",), "1", "mesh exits waited for", required=False),
+        "limit": Column(dims, "{unit}", "sticking limit of {over}"),
+        "sticks": Column(dims, "{unit}", "{over} at which the gear sticks"),
+        "passes": Column(dims, "{unit}", "{over} at which it does not"),
+    }
+
+
 STUDY = Study(
     kind="sticking_threshold",
     words="sticking threshold",
     maker="threshold",
     title="Threshold",
     command=_call,
-    examples=("gearidae threshold mine.toml --over coating.sam_fraction=0.4,0.8 --exits 20",),
-    columns={
-        "exits": Column(("exits",), "1", "mesh exits waited for", required=False),
-        "limit": Column(("exits",), "{unit}", "sticking limit of {over}"),
-        "sticks": Column(("exits",), "{unit}", "{over} at which the gear sticks"),
-        "passes": Column(("exits",), "{unit}", "{over} at which it does not"),
-        "value": Column(("run",), "{unit}", "{over}", required=False),
-        "exits_passed": Column(
-            ("run",), "1", "mesh exits until the gear stuck, or the run was over", required=False
-        ),
-        "stick_time": Column(("run",), "s", "when the gear stuck", required=False),
-        "simulated_time": Column(("run",), "s", "simulated time", required=False),
-    },
+    examples=(
+        "gearidae threshold mine.toml --over coating.sam_fraction=0.4,0.8 --exits 20",
+        "gearidae threshold mine.toml --over coating.sam_fraction=0.4,0.8 --exits 20 --seeds 20",
+    ),
+    columns={**_brackets(("exits",)), **_RUN_COLUMNS},
     sentence=_sentence,
     rows=_rows,
     pictures=(
         Picture("sticking_threshold", "Sticking limit against the mesh exits waited for", draw=picture),
+    ),
+)
+GEARS = Study(
+    kind="sticking_thresholds",
+    words="study of the sticking thresholds of gears",
+    maker="threshold --seeds",
+    columns={
+        **_brackets(("seed", "exits")),
+        "seed": Column(("seed",), "1", "seed of the gear", required=False),
+        "mean": Column(("exits",), "{unit}", "mean of the limits of the gears that have stuck"),
+        "deviation": Column(("exits",), "{unit}", "standard deviation of the limit of one gear"),
+        "stuck": Column(("exits",), "1", "gears that have stuck"),
+        "message": Column(("seed",), "", "why the gear has no limit", required=False),
+        "gear": Column(("run",), "1", "seed of the gear of the run", required=False),
+        **_RUN_COLUMNS,
+    },
+    sentence=_gears_sentence,
+    rows=_gears_rows,
+    pictures=(
+        Picture(
+            "sticking_thresholds",
+            "Sticking limits of gears of one design against the mesh exits waited for",
+            draw=picture_of_gears,
+        ),
     ),
 )
