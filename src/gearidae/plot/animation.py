@@ -30,6 +30,8 @@ def animate_teeth(
 ) -> Path:
     """Draw the teeth in mesh from one time to another, as `teeth` does for a single one, into a file.
 
+    Teeth with errors of their own stand where they are, errors and gaps enlarged by the factor that the picture states.
+
     Parameters
     ----------
     ds : xarray.Dataset

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from textwrap import wrap
 from typing import Any
@@ -17,7 +17,7 @@ from gearidae.analysis.ringing import hidden
 from gearidae.analysis.spectra import banded, crowded_from
 from gearidae.analysis.verdict import START_UP
 from gearidae.archive.pieces import pieces, reached
-from gearidae.archive.select import runs, scene_of
+from gearidae.archive.select import run_scene, runs, scene_of, swept_dims
 from gearidae.arrays import Floats
 from gearidae.drawing.density import DECADES, draw_density, is_apart, legend_on_density, line_on_density
 from gearidae.drawing.style import (
@@ -33,6 +33,7 @@ from gearidae.drawing.style import (
     tidy,
 )
 from gearidae.errors import SceneError
+from gearidae.scene.pitch_errors import has_pitch_errors
 from gearidae.scene.prefixes import with_prefix
 
 _SETTLED = 0.2
@@ -51,6 +52,10 @@ _FLAT = ("tukey", 0.2)
 _MULTIPLES = 6.0
 _MARKED_IF_WIDE = 4
 """Multiples of the highest line that a linear axis shows, and of the mesh that are marked on a logarithmic one."""
+_WITH_SIDEBANDS = 1.5
+"""Orders of the mesh that are shown where sidebands are marked."""
+_LINE = 11.0
+"""Points from one line of words to the next."""
 _MOST_SAMPLES = 2**19
 """Samples of a run that are analysed for a picture, which could not show more lines."""
 
@@ -124,7 +129,8 @@ def power_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     -------
     Axes
         With the frequencies of the drive and of the mesh and its multiples marked, from the mean speed of the fastest
-        run whose speed stays within a tenth; of run-ups and braked runs `orders` marks the mesh.
+        run whose speed stays within a tenth; of run-ups and braked runs `orders` marks the mesh. Where teeth have
+        errors of their own, or gears runout, the turns of both shafts and the sidebands beside the mesh are marked too.
         If there is no drive frequency and the teeth ring far above the mesh after impacts, both axes are logarithmic,
         up to beyond the ringing, the frequencies of which are marked for a single run; the spectrum is averaged over
         bands of 1/24 octave there, and only the start-up is left out. The estimate is named in the picture.
@@ -166,6 +172,8 @@ def power_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
         ax.set_xlim(0.0, min(nyquist, _MULTIPLES * max(lines)) if lines else nyquist)
     _fit_heights(ax, wide)
     _mark_all(ax, drive, mesh, rings if wide and len(shown) == 1 else [])
+    if mesh > 0.0:
+        _mark_sidebands(ax, mesh, _turns(ds))
     _name_estimate(ax, resolution, wide)
     label_axis(ax.xaxis, "frequency", "Hz")
     _note_aliases(ax, _alias_note(shown, found))
@@ -188,7 +196,9 @@ def orders(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     Returns
     -------
     Axes
-        Up to four times the order of the mesh, which is marked with its multiples, and the pinion's turn.
+        Up to four times the order of the mesh, which is marked with its multiples, and the pinion's turn. Where teeth
+        have errors of their own, or gears runout, it is drawn up to one and a half times the order of the mesh, with
+        the turns of both shafts and the sidebands beside the mesh, one and two turns of the pinion away.
 
     Raises
     ------
@@ -199,10 +209,12 @@ def orders(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     ax = new_axes(ax)
     gears = scene_of(ds)["gears"]
     mesh = int(gears["gear_teeth"])
+    turns = _turns(ds)
+    highest = (_WITH_SIDEBANDS if turns else _MARKED_IF_WIDE * 1.1) * mesh
     for run in shown:
         end = reached(run.data["gear_speed"])
         part = run.data[["gear_speed", "gear_angle"]].isel(time=slice(max(end - _MOST_SAMPLES, 0), end))
-        density = analysis.order_spectrum(part).sel(order=slice(0.0, _MARKED_IF_WIDE * 1.1 * mesh))
+        density = analysis.order_spectrum(part).sel(order=slice(0.0, highest))
         ax.semilogy(
             density["order"],
             density,
@@ -211,9 +223,12 @@ def orders(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
             linewidth=line_width(0.9),
             label=run.label,
         )
-    ax.set_xlim(0.0, _MARKED_IF_WIDE * 1.1 * mesh)
+    ax.set_xlim(0.0, highest)
     _fit_heights(ax, wide=False)
-    _mark(ax, mesh / int(gears["pinion_teeth"]), "pinion")
+    if turns:
+        _mark_sidebands(ax, float(mesh), turns)
+    else:
+        _mark(ax, mesh / int(gears["pinion_teeth"]), "pinion")
     _mark_all(ax, [], float(mesh), [])
     ax.set_xlabel("order (per turn of the gear)")
     _note_aliases(ax, alias_note(ds))
@@ -463,6 +478,34 @@ def _mark_all(ax: Axes, drive: list[float], mesh: float, rings: list[float]) -> 
             _mark(ax, line, text)
 
 
+def _turns(ds: xr.Dataset) -> dict[str, int]:
+    """Teeth of the gears whose turns show in a spectrum, as teeth or a runout let no two of them be alike."""
+    scene = run_scene(ds.isel(dict.fromkeys(swept_dims(ds), 0)))
+    mesh, gears = scene.mesh, scene.gears
+    if mesh is None or gears is None:
+        return {}
+    alike = not (has_pitch_errors(scene) or mesh.pinion_runout or mesh.gear_runout)
+    return {} if alike else {"pinion": gears.pinion_teeth, "gear": gears.gear_teeth}
+
+
+def _mark_sidebands(ax: Axes, mesh: float, turns: Mapping[str, int]) -> None:
+    """Mark the turns of the shafts, and the lines of the mesh that are one and two of the pinion's turns away.
+
+    Sidebands a turn of the gear apart are nearer than a picture shows; they are what is between.
+    """
+    low, high = ax.get_xlim()
+    wide = ax.get_xscale() == "log"
+    for number, (name, teeth) in enumerate(turns.items()):
+        if low <= mesh / teeth <= high:
+            _mark(ax, mesh / teeth, name, down=_LINE * (2 + number))
+    if not turns or wide:  # on a logarithmic axis they are beside the mesh as close as its own mark is wide
+        return
+    turn = mesh / turns["pinion"]
+    for multiple in (-2, -1, 1, 2):
+        ax.axvline(mesh + multiple * turn, color="0.6", linewidth=line_width(0.7), linestyle=":", zorder=0)
+    _mark(ax, mesh + 2.0 * turn, "\N{PLUS-MINUS SIGN} 1, 2 pinion", down=_LINE, line=False)
+
+
 def _name_estimate(ax: Axes, resolution: float, wide: bool) -> None:
     """Say in a corner how the spectrum was estimated."""
     window, length = ("Tukey" if wide else "Hann"), with_prefix(1.0 / resolution, "s")
@@ -510,14 +553,15 @@ def _last_pitch(speed: xr.DataArray, pitch: float) -> xr.DataArray:
     return speed.isel(time=slice(int(before[-1]) if before.size else 0, end + 1))
 
 
-def _mark(ax: Axes, frequency: float, text: str) -> None:
-    """Name a line of a spectrum at its top."""
-    ax.axvline(frequency, color="0.75", linewidth=line_width(0.7), zorder=0)
+def _mark(ax: Axes, frequency: float, text: str, *, down: float = 0.0, line: bool = True) -> None:
+    """Name a line of a spectrum at its top, or some points further down."""
+    if line:
+        ax.axvline(frequency, color="0.75", linewidth=line_width(0.7), zorder=0)
     ax.annotate(
         text,
         (frequency, 0.985),
         xycoords=ax.get_xaxis_transform(),
-        xytext=(2, 0),
+        xytext=(2, -down),
         textcoords="offset points",
         va="top",
         fontsize="small",

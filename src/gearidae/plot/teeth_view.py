@@ -20,6 +20,7 @@ from gearidae.plot.tooth_shape import GearPicture, contact_points, tooth_outline
 from gearidae.records import Flank
 from gearidae.records.tooth_states import ContactState, MeshState, ToothContact
 from gearidae.scene import GearScene, require_gears
+from gearidae.scene.pitch_errors import errors_of_teeth
 
 STATE_WORDS = {
     ContactState.OPEN: "open",
@@ -39,6 +40,8 @@ _TEETH = 5  # on either side of the pitch point
 _ACROSS, _DOWN, _UP = 4.6, 1.9, 2.0  # modules shown
 _LONGEST = 1.4  # modules of the longest arrow
 _NO_ARROW = 0.01  # of the largest force: less has no arrow
+_SHOWN, _MOST_PLAY = 0.12, 0.15
+"""Modules of the largest error of a tooth where it is drawn larger than it is, and pitches of the backlash at most."""
 _ROUNDED = 8.0  # roughnesses up to which the gap at a rounded end counts as near
 
 
@@ -48,7 +51,9 @@ def teeth(
     """Draw the teeth in mesh at one time, with close-ups of the pairs that meet.
 
     The gears are drawn to scale, from the involutes of the scene and the recorded motion. Gaps are nanometres: the
-    close-ups show them, with heights stretched by the factor they state.
+    close-ups show them, with heights stretched by the factor they state. Where teeth have errors of their own, gaps and
+    errors are drawn larger than they are between the gears too, by the factor stated there. It holds for the
+    flank that is nearer to contact; the other one has what play is left.
 
     Parameters
     ----------
@@ -115,6 +120,14 @@ def nearest_pairs(state: MeshState, places: int) -> list[ToothContact]:
     return sorted(taken.values(), key=lambda contact: contact.pair)
 
 
+def _enlarged(scene: GearScene) -> float:
+    """How many times their size gaps and errors of teeth are drawn: 1 without errors."""
+    largest = max(float(np.abs(errors).max()) for errors in errors_of_teeth(scene))
+    if largest == 0.0:
+        return 1.0
+    return max(float(f"{_SHOWN * scene.geometry.module / largest:.1g}"), 1.0)
+
+
 class TeethView:
     """A figure in which the teeth of one run can be drawn time after time.
 
@@ -132,7 +145,7 @@ class TeethView:
         self, ds: xr.Dataset, states: Sequence[MeshState], figure: Figure | SubFigure | None = None
     ) -> None:
         self._scene = require_gears(run_scene(ds))
-        self._picture = tooth_outline(self._scene)
+        self._picture = tooth_outline(self._scene, gaps=_enlarged(self._scene), most_play=_MOST_PLAY)
         self._largest = max(
             (abs(contact.force) for state in states for contact in state.contacts), default=0.0
         )
@@ -206,7 +219,7 @@ def _draw_mesh(
     ax.clear()
     ax.set_axis_off()
     module = picture.geometry.module
-    turned = picture.turned(state.travel, state.transmission_error)
+    turned = picture.turned(state.travel, state.transmission_error, shown[0].flank)
     for wheel, angle, colour in zip((picture.pinion, picture.gear), turned, FLANKS, strict=True):
         outline = wheel.outline(angle, _TEETH) / module
         ax.fill(*outline.T, facecolor=colour, edgecolor="0.25", linewidth=0.7)
@@ -225,6 +238,9 @@ def _draw_mesh(
     for name, height in (("pinion, drives", _UP - 0.28), ("gear", -_DOWN + 0.18)):
         ax.text(-_ACROSS + 0.1, height, f"{name}  {'→' if way > 0 else '←'}", fontsize="small", va="center")
     _scale_bar(ax, module)
+    if picture.gaps != 1.0:
+        words = f"gaps, and errors of single teeth, \N{MULTIPLICATION SIGN} {picture.gaps:g}"
+        ax.text(_ACROSS - 0.15, _UP - 0.28, words, fontsize="small", ha="right", va="center")
     ax.set_xlim(-_ACROSS, _ACROSS)
     ax.set_ylim(-_DOWN, _UP)
     ax.set_aspect("equal")

@@ -14,7 +14,7 @@ pair's place along the line of action is where the gear's flank crosses it.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,6 +24,7 @@ from gearidae.errors import SceneError
 from gearidae.mesh.involute import Geometry
 from gearidae.records import Flank
 from gearidae.scene import Scene, require_gears
+from gearidae.scene.pitch_errors import errors_of_teeth
 
 _FLANK_POINTS = 40
 _DEDENDUM = 1.25  # modules
@@ -50,6 +51,8 @@ class ToothedWheel:
         Base circle, largest radius of the teeth, and depth to which the body is drawn [m].
     turning : int
         1 counter-clockwise, -1 clockwise.
+    errors : ndarray, shape (teeth,)
+        How far each tooth is drawn back from its drive flank [m].
     """
 
     tooth: Floats
@@ -59,6 +62,7 @@ class ToothedWheel:
     tip_radius: float
     rim_radius: float
     turning: int
+    errors: Floats
 
     def outline(self, turned: float = 0.0, count: int | None = None) -> Floats:
         """Outline of the wheel, or of the teeth nearest to the mesh, closed by the rim.
@@ -77,21 +81,29 @@ class ToothedWheel:
         """
         pitch = 2.0 * math.pi / self.teeth
         if count is None:
-            angles = [self.turning * turned - k * pitch for k in range(self.teeth)]
-            whole: Floats = self._teeth_at(angles) + np.array([0.0, self.centre])
+            whole: Floats = self._teeth_at(turned, range(self.teeth), 0) + np.array([0.0, self.centre])
             return whole
         count = min(count, (self.teeth - 1) // 2)
-        beyond = turned - round(turned / pitch) * pitch
-        body = self._teeth_at([self.turning * beyond - k * pitch for k in range(-count, count + 1)])
+        passed = round(turned / pitch)
+        body = self._teeth_at(turned - passed * pitch, range(-count, count + 1), passed)
         first, last = (math.atan2(point[1], point[0]) for point in (body[0], body[-1]))
         back = np.linspace(last, last + (first - last) % (2.0 * math.pi), 40)
         rim = self.rim_radius * np.stack([np.cos(back), np.sin(back)], axis=1)
         outline: Floats = np.concatenate([body, rim]) + np.array([0.0, self.centre])
         return outline
 
-    def _teeth_at(self, angles: Sequence[float]) -> Floats:
-        """Outlines of teeth one after another, clockwise as the points of a tooth."""
-        return np.concatenate([_rotated(self.tooth, angle) for angle in angles])
+    def _teeth_at(self, turned: float, places: Iterable[int], passed: int) -> Floats:
+        """Outlines of teeth one after another, clockwise as the points of a tooth, after so many have passed."""
+        pitch = 2.0 * math.pi / self.teeth
+        outlines = []
+        for k in places:
+            # teeth that follow lag behind, in the wheel's own sense
+            error = float(self.errors[(passed + self.turning * k) % self.teeth])
+            # the pinion's drive flank leads and the gear's trails: both stand back clockwise
+            outlines.append(
+                _rotated(self.tooth, self.turning * turned - k * pitch - error / self.base_radius)
+            )
+        return np.concatenate(outlines)
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,24 +115,31 @@ class GearPicture:
     geometry : Geometry
     pinion, gear : ToothedWheel
     half_backlash : float
-        Half of the backlash as it is drawn [m].
+        Half of the backlash, times `gaps` [m].
     gaps : float
         How many times its size a gap is drawn.
+    play : float
+        Backlash as it is drawn [m].
     """
 
     geometry: Geometry
     pinion: ToothedWheel
     gear: ToothedWheel
     half_backlash: float
-    gaps: float = 1.0
+    gaps: float
+    play: float
 
-    def turned(self, travel: float, transmission_error: float) -> tuple[float, float]:
+    def turned(
+        self, travel: float, transmission_error: float, flank: Flank = Flank.DRIVE
+    ) -> tuple[float, float]:
         """Angles that tooth 0 of pinion and gear have turned beyond the pitch point [rad].
 
-        A static transmission error is drawn as a turn of the pinion, so that the drawn gap is the true one.
+        A static transmission error is drawn as a turn of the pinion, so that the drawn gap of the flank is true.
         """
         beyond = travel - self.geometry.approach
         ahead = self.gaps * transmission_error - self.half_backlash
+        if flank == Flank.COAST:
+            ahead += 2.0 * self.half_backlash - self.play
         pinion = (beyond + ahead) / self.geometry.base_radius_pinion
         return pinion, beyond / self.geometry.base_radius_gear
 
@@ -131,7 +150,7 @@ class GearPicture:
         return np.array([beyond * across, -beyond * math.sin(angle)])
 
 
-def tooth_outline(scene: Scene, *, gaps: float = 1.0) -> GearPicture:
+def tooth_outline(scene: Scene, *, gaps: float = 1.0, most_play: float = math.inf) -> GearPicture:
     r"""Lay out the gears of a scene: the outlines of their teeth, to scale, and where they stand to each other.
 
     Parameters
@@ -140,7 +159,11 @@ def tooth_outline(scene: Scene, *, gaps: float = 1.0) -> GearPicture:
         With gears.
     gaps : float, optional
         How many times their size the gaps between the teeth are drawn, on both flanks alike: the pinion's teeth are
-        thinner by so many times the backlash. Gaps are nanometres beside micrometres of a module.
+        thinner by so many times the backlash. Gaps are nanometres beside micrometres of a module. Errors of single
+        teeth are drawn as many times their size.
+    most_play : float, optional
+        Backlash that is drawn at most, in pitches along the path of contact. Where `gaps` times the scene's is more,
+        the gap of one flank at a time is drawn so many times its size.
 
     Returns
     -------
@@ -162,7 +185,7 @@ def tooth_outline(scene: Scene, *, gaps: float = 1.0) -> GearPicture:
     """
     scene = require_gears(scene)
     geometry = scene.geometry
-    backlash = gaps * scene.mesh.backlash
+    backlash = min(gaps * scene.mesh.backlash, most_play * geometry.base_pitch)
     if not 0.0 <= backlash < 0.5 * geometry.base_pitch or not gaps > 0.0:
         most = 0.5 * geometry.base_pitch / scene.mesh.backlash if scene.mesh.backlash else math.inf
         raise SceneError(
@@ -170,12 +193,14 @@ def tooth_outline(scene: Scene, *, gaps: float = 1.0) -> GearPicture:
         )
     rounding = scene.mesh.tip_relief_radius, _ROUNDED * scene.surface.roughness
     half_pitch = 0.5 * geometry.base_pitch
+    pinion, gear = (gaps * errors for errors in errors_of_teeth(scene))
     return GearPicture(
         geometry=geometry,
-        pinion=_wheel(geometry, geometry.pinion_teeth, geometry.recess, half_pitch - backlash, rounding, 1),
-        gear=_wheel(geometry, geometry.gear_teeth, geometry.approach, half_pitch, rounding, -1),
-        half_backlash=0.5 * backlash,
+        pinion=_wheel(geometry, pinion, geometry.recess, half_pitch - backlash, rounding, 1),
+        gear=_wheel(geometry, gear, geometry.approach, half_pitch, rounding, -1),
+        half_backlash=0.5 * gaps * scene.mesh.backlash,
         gaps=gaps,
+        play=backlash,
     )
 
 
@@ -199,7 +224,7 @@ def contact_points(picture: GearPicture, flank: Flank, place: float, gap: float)
 
 def _wheel(
     geometry: Geometry,
-    teeth: int,
+    errors: Floats,
     beyond_pitch: float,
     thickness: float,
     rounding: tuple[float, float],
@@ -209,6 +234,8 @@ def _wheel(
 
     Parameters
     ----------
+    errors : ndarray, shape (teeth,)
+        How far each tooth is drawn back [m].
     beyond_pitch : float
         How far beyond the pitch point its tips stay in contact, along the line of action [m].
     thickness : float
@@ -218,7 +245,7 @@ def _wheel(
     turning : int
         1 for the pinion, -1 for the gear.
     """
-    module, alpha = geometry.module, geometry.pressure_angle
+    module, alpha, teeth = geometry.module, geometry.pressure_angle, errors.size
     pitch_radius = 0.5 * teeth * module
     base = pitch_radius * math.cos(alpha)
     root = pitch_radius - _DEDENDUM * module
@@ -248,7 +275,9 @@ def _wheel(
     top = tip * np.stack([np.cos(land), np.sin(land)], axis=1)
     # from the trailing flank over the tip to the drive flank; the gear is the pinion's picture turned upside down
     tooth = np.concatenate([flank, top[::-1], other[::-1]]) * turning
-    return ToothedWheel(tooth, teeth, turning * pitch_radius, base, tip, root - _RIM * module, turning)
+    return ToothedWheel(
+        tooth, teeth, turning * pitch_radius, base, tip, root - _RIM * module, turning, errors
+    )
 
 
 def _rotated(points: Floats, angle: float) -> Floats:

@@ -98,7 +98,7 @@ class _Design:
         """Take in the starting torques at the next rate, and what is said of runs that have failed."""
         if self.torques.size:
             self.halvings += 1
-            before, now = (_quantiles(row)[1] - pitch_of(self.scene).dry for row in (self.torques, torques))
+            before, now = (quantiles(row)[1] - pitch_of(self.scene).dry for row in (self.torques, torques))
             # medians that no gear reaches are the same
             self.change = (
                 0.0 if before == now else abs(now / before - 1.0) if math.isfinite(before) else math.inf
@@ -201,7 +201,7 @@ def _in_parts(designs: Sequence[_Design], values: Floats) -> list[tuple[_Design,
     return list(zip(designs, np.split(values, len(designs)), strict=True))
 
 
-def _quantiles(torques: Floats) -> Floats:
+def quantiles(torques: Floats) -> Floats:
     """Quantiles of torques that are known, interpolated between the ordered ones; infinite from the first that is."""
     ordered = np.sort(torques[~np.isnan(torques)])
     place = np.array(QUANTILES) * (ordered.size - 1)
@@ -248,7 +248,7 @@ def _columns(designs: Sequence[_Design]) -> dict[str, Any]:
     torques = np.stack([design.torques for design in designs])
     starts = np.stack([design.starts for design in designs])
     finite = np.where(np.isfinite(torques), torques, np.nan)
-    quantiles = np.stack([_quantiles(values) for values in torques])
+    below = np.stack([quantiles(values) for values in torques])
     pitches = [pitch_of(design.scene) for design in designs]
     ages_at_start = [
         design.scene.initial.rest_time + ramp_time(pitch, design.scale, design.halvings, design.torques)
@@ -257,7 +257,7 @@ def _columns(designs: Sequence[_Design]) -> dict[str, Any]:
     return {
         "starting_torque": finite,
         "starts": starts,
-        "quantiles": np.where(np.isfinite(quantiles), quantiles, np.nan),
+        "quantiles": np.where(np.isfinite(below), below, np.nan),
         "parts": [_parts(design, *row) for design, *row in zip(designs, finite, ages_at_start, strict=True)],
         "age": np.where(np.isfinite(torques), ages_at_start, np.nan),
         "failed": np.isnan(torques),

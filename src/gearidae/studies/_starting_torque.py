@@ -23,10 +23,18 @@ from gearidae.scene import require_gears
 from gearidae.scene.carried import numbers_of
 from gearidae.scene.joints import ages
 from gearidae.scene.quantity import number, switch, whole
-from gearidae.studies._starting_seeds import starting_torques
+from gearidae.studies._starting_seeds import QUANTILES, quantiles, starting_torques
 from gearidae.studies.bracket import STRIDE, bracket, next_value
-from gearidae.studies.declared.starting_torque import GEAR_RESTS, GEARS, RESTS, STUDY, coordinate
+from gearidae.studies.declared.starting_torque import (
+    GEAR_RESTS,
+    GEARS,
+    RESTS,
+    STUDY,
+    TEETH,
+    coordinate,
+)
 from gearidae.studies.requirements import require_constant
+from gearidae.studies.specimens import gears_of, seed_of, seeds_that_draw
 from gearidae.studies.starting_parts import PARTS, Starting, parts_of
 from gearidae.studies.starting_ramp import nothing_followed, pitch_of
 
@@ -38,6 +46,9 @@ if TYPE_CHECKING:
 log = logging.getLogger(__name__)
 
 _FRACTIONS = np.round(np.linspace(1.0, 0.4, 13), 4)
+_FRACTION = "coating.sam_fraction"
+_ALIKE = {"mesh.pitch_error_rms": 0.0}
+"""Teeth without errors."""
 _LOWEST = 1e-3
 """Default lower end of the search, as a part of the scene's torque."""
 _PATIENCE = 3.0
@@ -123,8 +134,9 @@ def starting_torque(
     tolerance : float, optional
         Relative width at which the search among simulated torques ends, 0.001 .. 1.
     seeds : int, optional
-        Of a population the number of gears, 20 by default, whose seeds count from ``contact.seed`` on. `impacts`,
-        `lowest`, `simulated` and `tolerance` are not for populations.
+        Number of gears of one design, with seeds of discrete asperities, of errors of teeth
+        (``mesh.pitch_error_rms``), or of both, numbered from the scene's own on; 20 by default for a population, of
+        which `impacts`, `lowest`, `simulated` and `tolerance` are no settings.
     rest_time : array_like, optional
         Times at rest before the start, in seconds or with a unit, in place of ``initial.rest_time``: of hubs or a pin
         whose friction ages. Not with other fractions of the coating.
@@ -141,6 +153,11 @@ def starting_torque(
         NaN without `simulated`. ``parts`` divides the static torque along ``part``: dry resistance, adhesion of teeth,
         friction of flanks, hubs, pin, axial loads. All in N m on the pinion. The scene's own constant torque is the
         attribute ``drive_torque``; ``message`` names the run that failed. With `rest_time` the same, dims (rest_time).
+
+        Of smooth contacts with `seeds`, dims (sam_fraction, seed): ``starting_torque``, the simulated one of each gear
+        (NaN if none starts it), and ``stuck_torque``, at which it sticks. Along ``sam_fraction`` the
+        ``quantiles`` (10, 50 and 90 %), ``not_started``, the share that no torque has started, ``chance``, the share
+        that the drive's own constant torque starts, and ``static_torque``, of teeth without errors.
 
         Of a population, dims (sam_fraction, seed): ``starting_torque``, at the last moment of rest before the gear has
         turned one pitch, while the torque rises linearly; its ``parts`` along ``part``; ``starts``, whether the drive's
@@ -184,8 +201,10 @@ def starting_torque(
             base, GEARS if rests is None else GEAR_RESTS, points, scenes, seeds, execution
         )
     if seeds is not None:
-        raise SceneError(
-            "seeds", seeds, 'needs contact.roughness = "discrete": others do not differ by their seeds'
+        if rests is not None or not simulated:
+            raise SceneError("seeds", seeds, "is for simulated torques over the coating: leave it out here")
+        return _torques_of_gears(
+            scene, base, (points, scenes), seeds, _lowest(scene, lowest), impacts, tolerance, execution
         )
     study, least = STUDY if rests is None else RESTS, _lowest(scene, lowest)
 
@@ -204,6 +223,66 @@ def starting_torque(
     return study.compute(
         execution, base, work, settings if rests is None else [RESTS.kind, *settings], origin=scene
     )
+
+
+def _torques_of_gears(
+    scene: GearScene,
+    base: GearScene,
+    coatings: tuple[list[float], list[GearScene]],
+    seeds: int,
+    lowest: float,
+    impacts: int,
+    tolerance: float,
+    execution: Execution,
+) -> xr.Dataset:
+    """Starting torques of gears that differ in the errors of their teeth, at each coverage."""
+    gears, (points, scenes) = gears_of(base, seeds), coatings
+
+    def work(kept: RunCache | None) -> xr.Dataset:
+        static = [
+            static_starting_torque(variant.replace(_ALIKE), impacts=impacts, lowest=lowest)
+            for variant in scenes
+        ]
+        searches = [
+            _Search(variant.replace(gear), impacts, lowest, torque)
+            for variant, torque in zip(scenes, static, strict=True)
+            for gear in gears
+        ]
+        _search_all(searches, tolerance, execution, kept)
+        shape = (len(points), len(gears))
+        turns, sticks = (
+            np.reshape(column, shape) for column in zip(*[s.result for s in searches], strict=True)
+        )
+        below = np.stack([quantiles(row) for row in turns])
+        followed = (~np.isnan(turns)).sum(axis=1)
+        drive = base.drive.torque
+        started = (turns <= drive).sum(axis=1) / followed
+        values = {
+            "starting_torque": np.where(np.isfinite(turns), turns, np.nan),
+            "stuck_torque": sticks,
+            "quantiles": np.where(np.isfinite(below), below, np.nan),
+            "not_started": np.isinf(turns).sum(axis=1) / followed,
+            "chance": started if drive > 0.0 else np.full(len(points), np.nan),
+            "static_torque": np.array(static),
+            "message": np.reshape([search.failure for search in searches], shape),
+            "seed": np.array([seed_of(base.replace(gear)) for gear in gears]),
+            "quantile": np.array(QUANTILES),
+        }
+        attributes = {
+            **provenance(
+                scene, "searched starting torques of gears", swept=(_FRACTION, *seeds_that_draw(base))
+            ),
+            "title": f"{scene.name}: starting torque of {len(gears)} gears",
+            "summary": "Smallest drive torques that keep gears of one design turning against adhesion.",
+            "drive_torque": drive,
+            "impacts": impacts,
+            "tolerance": tolerance,
+        }
+        ds = TEETH.dataset(values, attributes)
+        return ds.assign_coords(sam_fraction=("sam_fraction", np.array(points), SAM_FRACTION.attributes))
+
+    settings = [TEETH.kind, points, impacts, lowest, tolerance, seeds]
+    return TEETH.compute(execution, base, work, settings, origin=scene)
 
 
 def _rests(base: GearScene, rest_time: ArrayLike, sam_fraction: ArrayLike | None) -> list[float]:
@@ -236,7 +315,14 @@ def _coatings(base: GearScene, sam_fraction: ArrayLike | None) -> tuple[list[flo
         if sam_fraction != "own":
             raise SceneError("sam_fraction", sam_fraction, "must be a list of numbers, or 'own'")
         return [float(np.mean(base.coating.fractions))], [base]
-    fractions = np.atleast_1d(numbers_of(_FRACTIONS if sam_fraction is None else sam_fraction, "1")).tolist()
+    try:
+        fractions = np.atleast_1d(
+            numbers_of(_FRACTIONS if sam_fraction is None else sam_fraction, "1")
+        ).tolist()
+    except (TypeError, ValueError) as error:
+        raise SceneError(
+            "sam_fraction", sam_fraction, f"must be a list of numbers, or 'own' ({error})"
+        ) from None
     return fractions, [base.replace({"coating.sam_fraction": fraction}) for fraction in fractions]
 
 
@@ -253,9 +339,7 @@ def _dataset(
         "parts": np.array([parts_of(search.scene, search.static) for search in searches]),
         "message": np.array([search.failure for search in searches]),
     }
-    key, against = (
-        ("initial.rest_time", "time at rest") if study is RESTS else ("coating.sam_fraction", "SAM fraction")
-    )
+    key, against = ("initial.rest_time", "time at rest") if study is RESTS else (_FRACTION, "SAM fraction")
     attributes = {
         **provenance(scene, "searched the starting torque", swept=(key,)),
         "title": f"{scene.name}: starting torque",

@@ -235,9 +235,9 @@ def _of_gears(lines: list[xr.Dataset]) -> xr.Dataset:
     worst = xr.DataArray(unfinished.argmax(axis=0), dims="sam_fraction")
     means = {
         "characteristic_frequency": _exp(first.mean("gear")).where(first_rings),
-        "uncertainty": np.sqrt((gears["uncertainty"] ** 2).mean("gear")),
+        "uncertainty": (gears["uncertainty"] ** 2).mean("gear") ** 0.5,
         "impact_frequency": _exp(logarithm.mean("gear")).where(rings),
-        "impact_uncertainty": np.sqrt((gears["impact_uncertainty"] ** 2).mean("gear")).where(rings),
+        "impact_uncertainty": ((gears["impact_uncertainty"] ** 2).mean("gear") ** 0.5).where(rings),
     }
     means = {name: mean.assign_attrs(gears[name].attrs) for name, mean in means.items()}
     every = gears["impact_frequency"].transpose("sam_fraction", "impact", "gear").values

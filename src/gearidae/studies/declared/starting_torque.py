@@ -1,7 +1,7 @@
 """Search the smallest drive torque at which a gear at rest begins to turn against adhesion.
 
 Of discrete asperities (contact.roughness = "discrete"): the distribution over drawn gears, whose torque rises slowly
-until each has turned one pitch.
+until each has turned one pitch. Of drawn errors of teeth (mesh.pitch_error_rms), with --seeds: the torque of each gear.
 """
 
 from __future__ import annotations
@@ -49,7 +49,10 @@ def _call(
     ] = None,
     tolerance: Annotated[float, Option("Relative width at which the search ends.")] = 0.1,
     seeds: Annotated[
-        int | None, Option("Gears of a population, with seeds from contact.seed on. Default: 20.")
+        int | None,
+        Option(
+            "Gears, with seeds of asperities and of errors of teeth from the case's own on. Default of asperities: 20."
+        ),
     ] = None,
     rest: Annotated[
         str | None, Option("Times at rest before the start, 1 ms,1 s: of hubs and a pin that age.")
@@ -66,7 +69,8 @@ def _call(
         coatings = "own coating" if fractions == "own" else f"{len(fractions)} fractions of the coating"
         coatings += "" if times is None else f", {len(times)} times at rest"
         if not scene.contact.is_discrete:
-            return f"{coatings}; one torque is tried after the other"
+            each = "" if seeds is None else f"{seeds} gears, "
+            return f"{each}{coatings}; one torque is tried after the other"
         return (
             f"{seeds or SEEDS} gears, {coatings}; each is run several times, with a torque that rises slowly"
         )
@@ -163,6 +167,44 @@ def _gears_sentence(ds: xr.Dataset) -> str:
         return f"{sentence}."
     started = int(worst["starts"].sum())
     return f"{sentence}; the drive's own {with_prefix(drive, 'N m', 4)} starts {started} of them."
+
+
+def _teeth_sentence(ds: xr.Dataset) -> str:
+    """Say what the gears of the worst coverage need."""
+    worst = ds.isel(sam_fraction=int(np.argmin(ds["sam_fraction"].values)))
+    low, middle, high = (_found(value) for value in worst["quantiles"].values.tolist())
+    coated = f"SAM {100.0 * float(worst['sam_fraction']):.4g} %"
+    return (
+        f"{coated}: half of {_followed_teeth(worst)} gears of this design start at {middle} on the pinion, 80 % of "
+        f"them between {low} and {high}."
+    )
+
+
+def _followed_teeth(point: xr.Dataset) -> int:
+    return int((point["message"] == "").sum())
+
+
+def _found(torque: float) -> str:
+    return with_prefix(torque, "N m", 3) if math.isfinite(torque) else "more than was tried"
+
+
+def _teeth_rows(ds: xr.Dataset) -> Rows:
+    """Quantiles, chance and failures at each coverage."""
+    drive = float(ds.attrs["drive_torque"])
+    for number in range(ds.sizes["sam_fraction"]):
+        point = ds.isel(sam_fraction=number)
+        count = _followed_teeth(point)
+        yield f"Starting torque of {count} gears, SAM {100.0 * float(point['sam_fraction']):.4g} %", "", ""
+        for share, torque in zip(
+            point["quantile"].values.tolist(), point["quantiles"].values.tolist(), strict=True
+        ):
+            yield f"{100.0 * share:.0f} % of the gears start below", _found(torque), ""
+        yield "teeth without errors", _found(float(point["static_torque"])), "static: without inertia"
+        if drive > 0.0:
+            started = round(float(point["chance"]) * count)
+            words = f"{started} of {count} start at the drive's own {with_prefix(drive, 'N m', 4)}"
+            yield "chance of starting", f"{float(point['chance']):.3g}", words
+        yield from _failures(point)
 
 
 def _gears_rows(ds: xr.Dataset) -> Rows:
@@ -347,6 +389,36 @@ def picture_of_gears(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     SceneError
         If the dataset is something else, or no gear has started.
     """
+    (GEAR_RESTS if "rest_time" in ds.dims else GEARS).require(ds)
+    return _distribution(ds, ax)
+
+
+def picture_of_teeth(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
+    """Draw the distribution function of the starting torques of gears whose teeth have errors.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        From `gearidae.studies.starting_torque` with seeds, of smooth contacts.
+    ax : matplotlib Axes, optional
+        Where to draw; by default in a figure of its own.
+
+    Returns
+    -------
+    Axes
+        As for a population; gears that adhesion does not hold count from the left edge on.
+
+    Raises
+    ------
+    SceneError
+        If the dataset is something else, or no gear has started.
+    """
+    TEETH.require(ds)
+    return _distribution(ds, ax)
+
+
+def _distribution(ds: xr.Dataset, ax: Axes | None) -> Axes:
+    """Draw which share of the gears starts below a torque, a line for each coverage."""
     from matplotlib.ticker import LogLocator, NullFormatter
 
     from gearidae.drawing.style import (
@@ -359,7 +431,6 @@ def picture_of_gears(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
         tidy,
     )
 
-    (GEAR_RESTS if "rest_time" in ds.dims else GEARS).require(ds)
     if not np.isfinite(ds["starting_torque"]).any():
         raise SceneError("plot", "starting_torques", "no gear has started")
     ax = new_axes(ax, height=3.8)
@@ -464,6 +535,7 @@ STUDY = Study(
         "gearidae starting-torque mine.toml",
         "gearidae starting-torque mine.toml --over coating.sam_fraction=1:0.4:-0.1 --impacts 1",
         'gearidae starting-torque mine.toml --rest "1 ms,1 s"',
+        "gearidae starting-torque mine.toml --set mesh.pitch_error_rms='3 nm' --seeds 20",
     ),
     columns=_torque_columns(_ALONG),
     sentence=_sentence,
@@ -517,5 +589,30 @@ GEAR_RESTS = Study(
             "Share of the gears that have stood which start below a torque",
             draw=picture_of_gears,
         ),
+    ),
+)
+TEETH = Study(
+    kind="starting_teeth",
+    words="study of starting torques of gears with errors of teeth",
+    maker="starting-torque --seeds",
+    columns={
+        "starting_torque": Column(
+            (*_ALONG, "seed"), "N m", "smallest simulated torque at which the gear turns from rest"
+        ),
+        "stuck_torque": Column((*_ALONG, "seed"), "N m", "largest simulated torque at which it sticks"),
+        "quantiles": Column(
+            (*_ALONG, "quantile"), "N m", "quantiles of the starting torque; NaN beyond those tried"
+        ),
+        "not_started": Column(_ALONG, "1", "share that no torque has started"),
+        "chance": Column(_ALONG, "1", "share that the drive's own torque starts"),
+        "static_torque": Column(_ALONG, "N m", "starting torque without inertia, of teeth without errors"),
+        "message": Column((*_ALONG, "seed"), "", "how the run of the gear has failed", required=False),
+        "seed": Column(("seed",), "1", "seed of the gear", required=False),
+        "quantile": Column(("quantile",), "1", "share of the gears below", required=False),
+    },
+    sentence=_teeth_sentence,
+    rows=_teeth_rows,
+    pictures=(
+        Picture("starting_teeth", "Share of the gears that start below a torque", draw=picture_of_teeth),
     ),
 )
