@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from gearidae.analysis.fitting import COMMON, RingSet, first_explanation
-from gearidae.analysis.map_model import BEFORE
+from gearidae.analysis.map_model import BEFORE, Scatter
 from reference.toy_map import FRACTIONS, IMPACTS, model, ring_set, sequences
 
 
@@ -60,3 +62,33 @@ def test_an_unsteady_speed_widens_the_interval():
     for chart in (model(), model([0.7, 1.0, 1.3])):
         steady, widened = (first_explanation(chart, signal, "auto") for signal in (record, drifting))
         assert np.ptp(widened.possible) > 1.3 * np.ptp(steady.possible)
+
+
+def test_scatter_between_gears_joins_the_covariance_and_widens_the_interval():
+    """Chi-square is the quadratic form of the whole covariance, and its determinant counts where it differs."""
+    worn = 1.0 - FRACTIONS
+    steps = np.abs(np.subtract.outer(np.arange(IMPACTS), np.arange(IMPACTS)))
+    between = (0.1 * worn[:, None, None]) ** 2 * 0.6**steps
+    chart = replace(model(), scatter=Scatter(between[None], 20))
+    record = ring_set(0.8)
+    plain, wide = (first_explanation(one, record, "start") for one in (model(), chart))
+    own = np.diag(0.002**2 + 0.005**2 + (0.006 * np.arange(IMPACTS)) ** 2) + COMMON**2
+    determinants = np.linalg.slogdet(own + between)[1]
+    row = np.searchsorted(FRACTIONS, 0.77)
+    deviation = np.log(record.frequency) - sequences()[row, BEFORE : BEFORE + IMPACTS]
+    expected = (
+        deviation @ np.linalg.solve(own + between[row], deviation) + determinants[row] - determinants.min()
+    )
+    assert wide.chi2[row] == pytest.approx(expected, rel=1e-9, abs=0)
+    assert wide.possible[0] < plain.possible[0]
+    assert wide.possible[-1] > plain.possible[-1]
+
+
+def test_no_scatter_changes_nothing():
+    """Of a map over seeds whose gears are alike the intervals are those of a map of one."""
+    chart = replace(model(), scatter=Scatter(np.zeros((1, len(FRACTIONS), IMPACTS, IMPACTS)), 20))
+    for record in (ring_set(0.8), ring_set(0.8, first=2.5)):
+        plain, same = (first_explanation(one, record, "auto") for one in (model(), chart))
+        assert plain.history == same.history
+        # a closed form of the common error against the inverse of the covariance
+        np.testing.assert_allclose(same.chi2, plain.chi2, rtol=1e-9, atol=1e-9)

@@ -225,3 +225,20 @@ def test_the_cycle_of_a_braked_run_is_its_last_pitch_while_it_ran():
     # v^2 / (2 a) is the angle that is left: a pitch, and what lies below 1 % of the largest speed
     assert speed[0] == pytest.approx(np.sqrt(2.0 * 4.0 * 2.0 * np.pi / LOW.gears.gear_teeth), rel=0.01)
     assert speed[-1] == pytest.approx(0.04, abs=0.001)
+
+
+def test_turns_of_both_shafts_and_sidebands_are_named_where_teeth_have_errors():
+    teeth = LOW.replace({"mesh.pitch_error_rms": "1 nm"})
+    run = _with_speed(lambda t: 30.0 + 0.1 * np.sin(900.0 * t)).assign_attrs(
+        scene=json.dumps(teeth.to_dict())
+    )
+    ratio = LOW.gears.gear_teeth / LOW.gears.pinion_teeth
+    for ax, turn in ((gd.plot.orders(run), 1.0), (gd.plot.power_spectrum(run), 30.0 / (2.0 * np.pi))):
+        marked = {text.get_text(): text.xy[0] for text in ax.texts if isinstance(text, Annotation)}
+        # the mean speed of the wave is 30 rad/s to a few parts in ten thousand
+        assert marked["gear"] == pytest.approx(turn, rel=1e-3)
+        assert marked["pinion"] == pytest.approx(turn * ratio, rel=1e-3)
+        dotted = [line.get_xdata()[0] for line in ax.get_lines() if line.get_linestyle() == ":"]
+        mesh = LOW.gears.gear_teeth * turn
+        expected = [mesh + side * turn * ratio for side in (-2, -1, 1, 2)]
+        np.testing.assert_allclose(dotted, expected, rtol=1e-3)

@@ -329,3 +329,52 @@ def test_command(archive, tmp_path, monkeypatch, capfd):
         assert main(command) == 2
         assert words in capfd.readouterr().err
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["one.png", "two.png", "two.webp"]
+
+
+@pytest.mark.parametrize("side", ["pinion", "gear"])
+@pytest.mark.parametrize("pair", [0, 17, 40])
+@pytest.mark.parametrize(("error", "overlaps"), [(-30e-9, True), (-5e-9, False), (30e-9, False)])
+def test_a_tooth_with_an_error_is_drawn_where_it_is(side, pair, error, overlaps):
+    """Its drive flank meets the other tooth's if it stands out by more than the gap, and no other tooth does."""
+    gap, place, enlarged = 10e-9, 0.4 * GEOMETRY.path_length, 20.0
+    for number, meets in ((pair, overlaps), (pair + 3, False)):
+        errors = np.zeros(getattr(SCENE.gears, f"{side}_teeth"))
+        errors[number % errors.size] = error
+        scene = SCENE.replace({f"mesh.{side}_pitch_error": errors})
+        picture = tooth_outline(scene, gaps=enlarged, most_play=0.15)
+        travel = place + pair * GEOMETRY.base_pitch
+        turned = picture.turned(travel, 0.5 * scene.mesh.backlash - gap)
+        pinion, gear = contact_points(picture, Flank.DRIVE, place, gap)
+        # where the other gear's flank, which has no error, crosses the line of action
+        wheel, angle, point = (
+            (picture.pinion, turned[0], gear) if side == "pinion" else (picture.gear, turned[1], pinion)
+        )
+        for count in (None, 5):
+            assert Outline(wheel.outline(angle, count)).contains_point(point) == meets
+
+
+def test_the_view_states_the_factor_and_the_forces_of_teeth_with_errors():
+    few = {"run.duration": 0.06, "run.samples": 301, "mesh.pitch_error_rms": "3 nm"}
+    run = gd.simulate(SCENE.replace(few))
+    texts = [text.get_text() for ax in gd.plot.teeth(run).axes for text in ax.texts]
+    (stated,) = (text for text in texts if "errors of single teeth" in text)
+    errors = gd.pitch_errors(SCENE.replace(few))
+    largest = max(float(np.abs(errors[name]).max()) for name in errors)
+    factor = float(stated.split()[-1])
+    assert 0.1 <= factor * largest / GEOMETRY.module <= 0.15
+    figure = gd.plot.tooth_errors(run)
+    upper, _, lower, _ = figure.axes
+    drawn = [bar.get_height() for bar in upper.patches]
+    np.testing.assert_allclose(drawn, 1e9 * errors.pinion_pitch_error, rtol=1e-9)
+    states = tooth_contacts(run, run.time.values)
+    most = max(
+        contact.force
+        for state in states
+        for contact in state.contacts
+        if contact.flank == Flank.DRIVE and contact.pair % 19 == 1
+    )
+    unit = {"nN": 1e9, "pN": 1e12, "fN": 1e15, "µN": 1e6}
+    factor = next(size for name, size in unit.items() if f"({name})" in lower.get_ylabel())
+    assert lower.patches[1].get_height() == pytest.approx(factor * most, rel=1e-9)
+    with pytest.raises(gd.SceneError, match="teeth have no errors"):
+        gd.plot.tooth_errors(gd.simulate(SCENE, t_end=1e-3, samples=11))

@@ -98,6 +98,18 @@ def starting_torques_rests(path, scene=HIGH, **more):
     return gd.studies.starting_torque(gears, seeds=1, rest_time=[0.0, 1.0], archive=path, **more)
 
 
+def starting_teeth(path, scene=LOW, **more):
+    teeth = scene.replace({"coating.sam_fraction": 0.45, "mesh.pitch_error_rms": "3 nm"})
+    options = {"impacts": 1, "tolerance": 1.0, "seeds": 2}
+    return gd.studies.starting_torque(teeth, "own", **options, archive=path, **more)
+
+
+def sticking_thresholds(path, scene=LOW, **more):
+    teeth, ends = scene.replace({"mesh.pitch_error_rms": "3 nm"}), (0.3, 0.8)
+    options = {"between": ends, "exits": 2, "width": 0.2, "seeds": 2}
+    return gd.studies.sticking_threshold(teeth, **options, archive=path, **more)
+
+
 def sticking_threshold(path, scene=LOW, **more):
     return gd.studies.sticking_threshold(scene, between=(0.4, 0.7), exits=5, width=0.05, archive=path, **more)
 
@@ -117,10 +129,12 @@ STUDIES = {
         pull_off,
         start_probability,
         starting_rests,
+        starting_teeth,
         starting_torque,
         starting_torques,
         starting_torques_rests,
         sticking_threshold,
+        sticking_thresholds,
     )
 }
 """By the kinds of their files; keyword arguments are the scene and the options of every study."""

@@ -55,3 +55,37 @@ def test_no_other_map_is_replaced(tmp_path):
     assert archive.read_bytes() == before
     with pytest.raises(gd.SceneError, match="needs an archive"):
         coating_map(LOW, FRACTIONS, resume=True)
+
+
+def test_a_map_over_seeds_is_the_mean_of_its_gears_and_has_what_each_rings():
+    teeth = LOW.replace({"mesh.pitch_error_rms": "3 nm", "mesh.pitch_error_seed": 3})
+    chart = coating_map(teeth, FRACTIONS[1:], seeds=5)
+    assert chart.attrs["seeds"] == 5
+    assert chart.gear_frequency.dims == ("sam_fraction", "impact", "gear")
+    alone = coating_map(teeth.replace({"mesh.pitch_error_seed": 5}), FRACTIONS[1:])
+    np.testing.assert_array_equal(chart.gear_frequency.isel(gear=2), alone.impact_frequency)
+    mean = np.exp(np.log(chart.gear_frequency.values).mean(axis=-1))
+    rings = np.isfinite(mean)
+    np.testing.assert_allclose(chart.impact_frequency.values[rings], mean[rings], rtol=1e-12)
+    assert "between gears" in str(list(STUDY.rows(chart)))
+    assert "One of 5 gears" in STUDY.sentence(chart)
+    # a further gear of the design: the statement says what the interval includes
+    record = gd.simulate(teeth.replace({"mesh.pitch_error_seed": 99, "coating.sam_fraction": 0.85}))
+    assessment = gd.analysis.assess(record, chart)
+    assert "off the mean of the map's 5, which the interval includes" in assessment.explanation
+    assert assessment.low < 0.85 < assessment.high
+    one = gd.analysis.assess(record, alone)
+    assert "one drawing (mesh.pitch_error_seed)" in one.explanation or not one.conclusive
+
+
+@pytest.mark.parametrize(
+    ("scene", "seeds", "words"),
+    [
+        (LOW, 20, r"needs contact.roughness .*mesh\.pitch_error_rms"),
+        (LOW.replace({"mesh.pitch_error_rms": 3e-9}), 4, "must be 5 or more"),
+        (LOW.replace({"mesh.pitch_error_rms": 3e-9}), 0, "seeds = 0"),
+    ],
+)
+def test_seeds_that_make_no_map_are_refused(scene, seeds, words):
+    with pytest.raises(gd.SceneError, match=words):
+        coating_map(scene, FRACTIONS, seeds=seeds)

@@ -20,6 +20,9 @@ from gearidae.studies.declared.starting_torque import STUDY
 
 SCENE = gd.preset("teodorescu2009_low_speed")
 FORCE = SCENE.drive.torque / SCENE.gears.pinion_base_radius
+TEETH = SCENE.replace(
+    {"coating.sam_fraction": 0.5, "mesh.pitch_error_rms": "3 nm", "mesh.pitch_error_seed": 7}
+)
 
 
 def at(fraction, **changes):
@@ -159,6 +162,21 @@ def test_simulated_torque_turns_and_a_smaller_one_sticks():
         assert bool(run.gear_angle[-1] - run.gear_angle[0] >= pitch) is expected
 
 
+def test_each_gear_of_a_design_has_a_starting_torque_of_its_own():
+    """A run of its own turns at it, and sticks at the smaller one of the search."""
+    found = starting_torque(TEETH, "own", impacts=2, tolerance=0.5, seeds=3)
+    assert found.seed.values.tolist() == [7, 8, 9]
+    torques = found.starting_torque.values[0]
+    assert np.unique(torques).size == 3
+    assert float(found.quantiles.sel(quantile=0.5)[0]) == float(np.median(torques))
+    alone = starting_torque(TEETH.replace({"mesh.pitch_error_seed": 8}), "own", impacts=2, tolerance=0.5)
+    # each search begins at the static torque, which is that of teeth without errors of all gears
+    turns, sticks = float(alone.simulated_torque[0]), float(alone.simulated_stuck[0])
+    assert sticks < torques[1] * 1.5
+    assert turns > float(found.stuck_torque[0, 1]) / 1.5
+    assert float(found.chance[0]) == float((torques <= TEETH.drive.torque).mean())
+
+
 def test_wrong_settings_are_named():
     for call, message in (
         (lambda: static_starting_torque(gd.preset("roller_slow")), "must be a scene with gears"),
@@ -166,6 +184,9 @@ def test_wrong_settings_are_named():
         (lambda: static_starting_torque(SCENE, lowest=-1.0), "lowest = -1.0"),
         (lambda: starting_torque(SCENE, tolerance=0.0), "tolerance"),
         (lambda: starting_torque(SCENE, [2.0]), r"coating\.sam_fraction"),
+        (lambda: starting_torque(SCENE, ["some"]), "sam_fraction = .*must be a list of numbers, or 'own'"),
+        (lambda: starting_torque(SCENE, seeds=3), r"seeds = 3: needs .*mesh\.pitch_error_rms"),
+        (lambda: starting_torque(TEETH, seeds=3, simulated=False), "seeds = 3: is for simulated"),
     ):
         with pytest.raises(gd.SceneError, match=message):
             call()

@@ -157,3 +157,35 @@ def test_the_command_prints_the_brackets(brackets, tmp_path, monkeypatch, capsys
     assert f"{limit:.4g}" in printed
     assert "no run has stuck so early" in printed
     assert main([*command[:-1], "0", "--overwrite"]) == 2
+
+
+def test_each_gear_of_a_design_has_a_limit_of_its_own():
+    """That of a gear is what a search of its own finds; mean and deviation are those of the limits."""
+    teeth = LOW.replace({"mesh.pitch_error_rms": "3 nm", "mesh.pitch_error_seed": 4})
+    options = {"between": (0.3, 0.8), "exits": 2, "width": 0.1}
+    found = gd.studies.sticking_threshold(teeth, seeds=2, **options)
+    assert found.seed.values.tolist() == [4, 5]
+    alone = gd.studies.sticking_threshold(teeth.replace({"mesh.pitch_error_seed": 5}), **options)
+    for name in ("limit", "sticks", "passes"):
+        np.testing.assert_array_equal(found[name].sel(seed=5), alone[name])
+    assert (found.gear.values == 5).sum() == alone.sizes["run"]
+    limits = found.limit.values[:, -1]
+    assert float(found["mean"][-1]) == pytest.approx(limits.mean(), rel=1e-12)
+    assert float(found.deviation[-1]) == pytest.approx(limits.std(ddof=1), rel=1e-9, abs=1e-15)
+
+
+def test_gears_that_do_alike_at_both_ends_have_no_limit_and_say_so(monkeypatch):
+    teeth = LOW.replace({"mesh.pitch_error_rms": "3 nm"})
+    usual = threshold._check_ends
+
+    def alike(pool, ends):
+        usual(pool, ends if pool.scene.mesh.pitch_error_seed else (ends[1], ends[1]))
+
+    monkeypatch.setattr(threshold, "_check_ends", alike)
+    found = gd.studies.sticking_threshold(teeth, between=(0.3, 0.8), exits=2, width=0.5, seeds=2)
+    assert np.isnan(found.limit.sel(seed=0)).all()
+    assert "at both it passes them" in str(found.message.sel(seed=0).values)
+    assert int(found.stuck[-1]) == 1
+    for wrong, words in ((0, "seeds = 0"), (2, r"seeds = 2: needs .*mesh\.pitch_error_rms")):
+        with pytest.raises(gd.SceneError, match=words):
+            gd.studies.sticking_threshold(teeth if wrong == 0 else LOW, between=(0.3, 0.8), seeds=wrong)

@@ -51,9 +51,8 @@ def sticking_probability(
     """
     ds = as_ensemble(ds)
     names = drawn_keys(ds)
-    over = over or next(
-        (key for key in (_COVERAGE, *names) if key in names and key not in SEED_KEYS), SEED_KEYS[0]
-    )
+    drawn = [key for key in (_COVERAGE, *names) if key in names and key not in SEED_KEYS]
+    over = over or next(iter(drawn), next(iter(names)))
     estimate = probability_of(ds, over, bins=bins)
     name = names[over]
     along = parameter_axis(ds[name])

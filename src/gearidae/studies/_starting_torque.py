@@ -278,8 +278,7 @@ def _torques_of_gears(
             "impacts": impacts,
             "tolerance": tolerance,
         }
-        ds = TEETH.dataset(values, attributes)
-        return ds.assign_coords(sam_fraction=("sam_fraction", np.array(points), SAM_FRACTION.attributes))
+        return TEETH.dataset(values, attributes).assign_coords(coordinate(TEETH, points))
 
     settings = [TEETH.kind, points, impacts, lowest, tolerance, seeds]
     return TEETH.compute(execution, base, work, settings, origin=scene)

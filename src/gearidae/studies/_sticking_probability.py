@@ -31,10 +31,10 @@ def sticking_probability(
     Parameters
     ----------
     ds : Dataset
-        From `ensemble`, or from `gearidae.sweep` over ``contact.seed`` and other keys: then each run is a member.
+        From `ensemble`, or from `gearidae.sweep` over seeds and other keys: then each run is a member.
     over : str, optional
-        Key that was drawn; by default all members are taken together. The seed of a population is none: it has no
-        order.
+        Key that was drawn; by default all members are taken together. A seed, of a population or of errors of teeth,
+        is none: it has no order.
     bins : int, optional
         Number of intervals of the key, with as many members in each; by default as many as have 25 members or more, at
         most 20. A key of few values, such as that of a sweep, has an interval for each of them.
@@ -66,7 +66,11 @@ def sticking_probability(
     if over is None:
         return xr.Dataset(_band([members["sticks"].values], (), confidence), attrs=ds.attrs)
     if over not in names:
-        raise SceneError("over", over, f"must be a key that was drawn: {', '.join(names)}")
+        others = (
+            ", ".join(names)
+            or "seeds alone were, which have no order; without one all members count together"
+        )
+        raise SceneError("over", over, f"must be a key that was drawn: {others}")
     name = names[over]
     ordered = members.sortby(name)
     groups = _groups(ordered[name].values, bins)
