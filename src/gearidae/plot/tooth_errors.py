@@ -63,6 +63,7 @@ def tooth_errors(ds: xr.Dataset, *, figure: Figure | SubFigure | None = None) ->
     errors, forces = errors_of_teeth(scene), largest_forces(scene, states)
     figure = figure or new_picture((7.6, 4.2), panels=True)
     axes = figure.subplots(2, 2, sharex="col", width_ratios=[1.0, 1.6])
+    figure.subplots_adjust(left=0.1, right=0.98, top=0.96, bottom=0.12)
     scales = [
         scale_for(max(float(np.abs(values).max()) for values in both if values.size), unit)
         for both, unit in ((errors, "m"), ([side[np.isfinite(side)] for side in forces], "N"))

@@ -311,7 +311,11 @@ def _dataset_of_gears(
 ) -> xr.Dataset:
     """Put the brackets and runs of all gears together."""
     seeds = [seed_of(gear.scene) for gear in gears]
-    brackets = {name: np.stack([one[name].values for one in found]) for name in ("limit", "sticks", "passes")}
+    without = np.array([bool(gear.message) for gear in gears])[:, None]  # two ends alone are no bracket
+    brackets = {
+        name: np.where(without, np.nan, np.stack([one[name].values for one in found]))
+        for name in ("limit", "sticks", "passes")
+    }
     stuck = np.isfinite(brackets["limit"])
     limits = [column[here] for column, here in zip(brackets["limit"].T, stuck.T, strict=True)]
     values = {
