@@ -63,7 +63,7 @@ def test_two_asperities_hold_a_gear_as_statics_says():
     """Statics knows no ramp: 1 % is what the torque rises while the last barrier is passed."""
     scene, phase = _barrier(3)
     assert 0.1 < phase < 0.6
-    at = starting_ramp.seated(scene, 3)
+    at = starting_ramp.seated(scene, {"contact.seed": 3})
     wanted = _largest_static_torque(scene, phase)
     scale = float(starting_ramp.run_from_rest(starting_ramp.probe(at), "auto")[1])
     torque = float(starting_ramp.run_from_rest(starting_ramp.ramp(at, scale, 0), "auto")[1])
@@ -79,7 +79,7 @@ def test_a_gear_is_laid_down_where_the_first_asperity_is_about_to_join():
     teeth = {"coating.pairing": "independent", "coating.gear_table": [[0.0], [1.0]] * 38}
     for seed, covered in ((0, patches), (4, patches), (0, teeth), (4, teeth), (7, teeth)):
         scene = BARE.replace({"coating.thickness": "2 nm", **covered, "run.exposures": 4})
-        at = starting_ramp.seated(scene, seed)
+        at = starting_ramp.seated(scene, {"contact.seed": seed})
         assert first_touch(at) == at.initial.gap
         joined = []
         for nearer in (0.0, 1e-12):
@@ -132,7 +132,7 @@ def starting_torques():
 
 def test_each_gear_is_found_alone(starting_torques):
     assert starting_torques.starting_torque.dims == ("sam_fraction", "seed")
-    at = starting_ramp.seated(BARE, 1)
+    at = starting_ramp.seated(BARE, {"contact.seed": 1})
     assert float(starting_torques.place[1]) == at.initial.mesh_phase
     scale, (rate,) = starting_torques.ramp_end.item() / 8.0, starting_torques.rate.values
     assert rate == pytest.approx(
