@@ -31,10 +31,7 @@ def _largest(shaft: Drive | Load, speed: float, duration: float) -> float:
     if isinstance(shaft, Load):
         steady += shaft.viscous * abs(speed)
     if shaft.law is not None:
-        largest = largest_torque(shaft.law.name, shaft.law.numbers(), speed, duration)
-        # the next power of two: units must not follow the times at which a run of this duration looks at the law, or
-        # a run cut in two would round its numbers otherwise than the whole
-        steady += math.ldexp(1.0, math.frexp(largest)[1]) if largest > 0.0 else 0.0
+        steady += largest_torque(shaft.law.name, shaft.law.numbers(), speed, duration)
     return steady + max((abs(value) for _, value in shaft.schedule), default=0.0)
 
 
