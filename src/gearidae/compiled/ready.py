@@ -10,6 +10,7 @@ ELASTIC: Final = "elastic contacts"
 EXPOSURES: Final = "exposures"
 POPULATION: Final = "populations of asperities"
 FRICTION: Final = "friction"
+IMPACTS: Final = "impacts"
 """Parts of the program, each compiled with the first scene that needs it."""
 
 

@@ -11,9 +11,8 @@ The most stretched asperity still in contact is extended by S = h - zeta.
 
 from __future__ import annotations
 
-import math
-
 from gearidae.compiled import compiled
+from gearidae.formulas.interpolation import turning_point
 
 
 @compiled
@@ -53,15 +52,4 @@ def extreme_gap(span: float, gap0: float, rate0: float, gap1: float, rate1: floa
     float
         Gap at the turning point; its error is of fourth order in `span`.
     """
-    m0, m1 = span * rate0, span * rate1
-    rise = gap1 - gap0
-    a = 3.0 * (m0 + m1 - 2.0 * rise)
-    b = m1 - m0 - a
-    root = math.sqrt(max(b * b - 4.0 * a * m0, 0.0))
-    q = -0.5 * (b + (root if b >= 0.0 else -root))
-    # of the two zeros q/a and m0/q of the rate a s^2 + b s + m0 exactly one lies within the step
-    s = m0 / q if q != 0.0 else 0.0
-    if not 0.0 <= s <= 1.0:
-        s = q / a if a != 0.0 else 0.5
-    s = min(max(s, 0.0), 1.0)
-    return gap0 + s * (m0 + s * (0.5 * b + s * a / 3.0))
+    return turning_point(span, gap0, rate0, gap1, rate1)[1]

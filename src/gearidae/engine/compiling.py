@@ -17,6 +17,7 @@ from gearidae.compiled import is_ready, make_ready
 from gearidae.compiled.ready import ELASTIC as ELASTIC
 from gearidae.compiled.ready import EXPOSURES as EXPOSURES
 from gearidae.compiled.ready import FRICTION as FRICTION
+from gearidae.compiled.ready import IMPACTS as IMPACTS
 from gearidae.compiled.ready import POPULATION as POPULATION
 from gearidae.compiled.ready import SOLVER as SOLVER
 
@@ -28,6 +29,7 @@ HOW_LONG: Final = {
     EXPOSURES: "some ten seconds",
     POPULATION: "some ten seconds",
     FRICTION: "some ten seconds",
+    IMPACTS: "some seconds",
 }
 """How long that takes."""
 FUNCTIONS: Final = {

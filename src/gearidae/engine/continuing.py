@@ -35,6 +35,7 @@ from gearidae.engine.model.record_types import FREE
 from gearidae.engine.model.state import (
     EMPTY,
     EXTREMES,
+    HISTORY,
     MOTION,
     PHASE,
     STATE,
@@ -139,6 +140,8 @@ def checkpoint_of_start(scene: Scene, start: Start) -> Floats:
         _begin_balance(m, y)
     if source.scene.follow.passages != m.scene.follow.passages:
         m.state.passage[:] = np.zeros((), STATE["passage"])  # nothing is known of what has been before
+    if source.scene.follow.impacts != m.scene.follow.impacts:
+        m.state.history["impact"] = np.zeros((), HISTORY["impact"])
     rebase(m, y)
     m.state.progress.restarts = 1
     return new.checkpoint(time, y)

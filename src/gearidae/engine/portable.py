@@ -96,7 +96,7 @@ def run(
             break
         y, yp = reached
         yield from _samples(problem, solver, out, y, reader)
-        if not has_room(driver.events, driver.passages, out):
+        if not has_room(driver.events, driver.passages, driver.impacts, out):
             yield out.block(m, driver.time)
         afresh = finish_step_at(solver.addresses.place, float(driver.time), y, yp, between, flag, out)
         if driver.error in MODEL_CHANGES:

@@ -93,11 +93,12 @@ from gearidae.engine.model.state import PHASE, Floats, Model, W
 from gearidae.engine.motion.observe import observe
 from gearidae.engine.motion.pair_forces import finish_deflections, is_eliminated, set_deflections
 from gearidae.engine.motion.residual import residual
-from gearidae.engine.observers import adhesion_loss, balance, friction_losses
+from gearidae.engine.observers import adhesion_loss, balance, friction_losses, impacts
 from gearidae.engine.observers.exposures import follow as exposures
 from gearidae.engine.observers.exposures.contacts import add_asperity_switches
 from gearidae.engine.observers.extremes import follow as extremes
 from gearidae.engine.observers.finish import finish_account
+from gearidae.engine.observers.impacts import IMPACTS_AT_ONCE, write_impacts
 from gearidae.engine.observers.passages import PASSAGES_AT_ONCE, write_passages
 from gearidae.engine.pairs.orbit import follow_orbit, orbit_anew
 from gearidae.engine.pairs.tooth_pairs import flank_of_history, in_flight, list_known
@@ -130,7 +131,7 @@ def advance(place: int, arrays: Arrays, out: Output, budget: int) -> None:
     place : int
         Where the model lies, from `Addresses`; its ``work.driver`` says where the run stands.
     out : Output
-        Rows, events and passages of this block.
+        Samples and rows of this block.
     budget : int
         Steps to do at most.
     """
@@ -147,7 +148,7 @@ def advance(place: int, arrays: Arrays, out: Output, budget: int) -> None:
         and driver.done == 0
         and budget > 0
         # asked before the step: what happens at its end is recorded where it is dealt with, which cannot be repeated
-        and has_room(driver.events, driver.passages, out)
+        and has_room(driver.events, driver.passages, driver.impacts, out)
     ):
         if driver.pending == 0:
             if (
@@ -185,10 +186,11 @@ def advance(place: int, arrays: Arrays, out: Output, budget: int) -> None:
 
 
 @compiled
-def has_room(events: int, passages: int, out: Output) -> bool:
+def has_room(events: int, passages: int, impacts: int, out: Output) -> bool:
     """Whether all that happens at one more accepted time finds room in the block; else the block is yielded first."""
     room = out.events.shape[0] - EVENTS_AT_ONCE, out.passages.shape[0] - PASSAGES_AT_ONCE
-    return bool(events <= room[0] and passages <= room[1])
+    left = out.impacts.shape[0] - IMPACTS_AT_ONCE
+    return bool(events <= room[0] and passages <= room[1] and impacts <= left)
 
 
 @compiled(inline=True)
@@ -554,6 +556,8 @@ def account(
         closed = balance.step(m, t, y, yp, at, between)
     if m.scene.follow.exposures != 0:
         exposures.step(m, t, y, yp, at[1], closed)
+    if m.scene.follow.impacts != 0:
+        impacts.step(m, t, y, yp, at[1])
 
 
 class Switched(NamedTuple):
@@ -632,6 +636,9 @@ def switch(
     passages = filled[1]
     if crossed and m.scene.follow.passages != 0:
         passages = write_passages(m, t, y, events, (filled[0], count), out.passages, passages)
+    if m.scene.follow.impacts != 0 and count > filled[0]:
+        driver = m.work.driver
+        driver.impacts = write_impacts(m, t, y, yp, events, (filled[0], count), out.impacts, driver.impacts)
     if chatters(m, t):
         error = CHATTER
     return Switched(restart, count, passages, error)
@@ -694,6 +701,8 @@ def prepare_start(m: Model, t: float, y: Floats, yp: Floats) -> None:
         extremes.begin(m, t, y, yp, force)
     if follow.exposures != 0:
         exposures.begin(m, t, y, yp)
+    if follow.impacts != 0:
+        impacts.begin(m, t, y, yp)
     driver.step_end, driver.step = t, 0.0
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from gearidae.compiled import compiled
 
 
@@ -16,6 +18,23 @@ def cubic_slope(s: float, h: float, f0: float, rate0: float, f1: float, rate1: f
     """Slope of `cubic` in s."""
     ends = (1.0 - s) * (1.0 - 3.0 * s) * rate0 - s * (2.0 - 3.0 * s) * rate1
     return 6.0 * s * (1.0 - s) * (f1 - f0) + h * ends
+
+
+@compiled
+def turning_point(h: float, f0: float, rate0: float, f1: float, rate1: float) -> tuple[float, float]:
+    """Share of the way at which `cubic` turns round between ends whose rates differ in sign, and its value there."""
+    m0, m1 = h * rate0, h * rate1
+    rise = f1 - f0
+    a = 3.0 * (m0 + m1 - 2.0 * rise)
+    b = m1 - m0 - a
+    root = math.sqrt(max(b * b - 4.0 * a * m0, 0.0))
+    q = -0.5 * (b + (root if b >= 0.0 else -root))
+    # of the two zeros q/a and m0/q of the rate a s^2 + b s + m0 exactly one lies within the step
+    s = m0 / q if q != 0.0 else 0.0
+    if not 0.0 <= s <= 1.0:
+        s = q / a if a != 0.0 else 0.5
+    s = min(max(s, 0.0), 1.0)
+    return s, f0 + s * (m0 + s * (0.5 * b + s * a / 3.0))
 
 
 @compiled

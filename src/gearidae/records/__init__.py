@@ -43,6 +43,7 @@ from gearidae.records.extremes import (
     RUN_PARTS,
     Extremes,
 )
+from gearidae.records.impacts import Impacts
 from gearidae.records.passages import Passages
 from gearidae.records.results import (
     ROWS,
@@ -97,6 +98,7 @@ __all__ = [
     "ExposureRows",
     "Extremes",
     "Flank",
+    "Impacts",
     "Passages",
     "RowColumn",
     "Rows",

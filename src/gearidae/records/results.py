@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from gearidae.records.energy import EnergyBalance
 from gearidae.records.events import Events
 from gearidae.records.extremes import Extremes
+from gearidae.records.impacts import Impacts
 from gearidae.records.passages import Passages
 from gearidae.records.rows import Rows
 from gearidae.records.statistics import Statistics
@@ -40,6 +41,8 @@ class Block:
         The extremes at the end of this block; missing under the same condition.
     passages : ndarray, shape (k, columns)
         Table of `Passages`.
+    impacts : ndarray, shape (l, columns)
+        Table of `Impacts`.
     """
 
     rows: NDArray[np.float64]
@@ -49,9 +52,10 @@ class Block:
     balance: EnergyBalance | None = None
     extremes: Extremes | None = None
     passages: NDArray[np.float64] = field(default_factory=Passages.no_table)
+    impacts: NDArray[np.float64] = field(default_factory=Impacts.no_table)
 
 
-ROWS: Final[tuple[type[Rows], ...]] = (Events, Passages)
+ROWS: Final[tuple[type[Rows], ...]] = (Events, Passages, Impacts)
 """Kinds of rows that a run leaves, each a field of a block and of a solution."""
 
 
@@ -80,6 +84,7 @@ class Solution:
     checkpoint : ndarray of 8-byte words, optional
         State at the end, from which another run can continue.
     passages : Passages
+    impacts : Impacts
     """
 
     time: NDArray[np.float64]
@@ -94,3 +99,4 @@ class Solution:
     start: float = 0.0
     checkpoint: Words | None = None
     passages: Passages = field(default_factory=Passages.none)
+    impacts: Impacts = field(default_factory=Impacts.none)

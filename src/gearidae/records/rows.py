@@ -1,4 +1,4 @@
-"""Rows of a run, which come one by one in the order of time: events, passages, and what else is declared so.
+"""Rows of a run, which come one by one in the order of time: events, passages, impacts, and what else is declared so.
 
 A kind of rows declares its columns once. Blocks of a driver, solutions, kept runs, datasets and archives that grow
 follow from the declarations.

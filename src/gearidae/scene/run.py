@@ -99,6 +99,10 @@ class Run(Group):
         default=True,
         description="whether a table of passages is kept, with works, losses and forces at each mesh exit",
     )
+    impacts: Switch = Field(
+        default=False,
+        description="whether a table of impacts is kept, with force, impulse and loss of each contact of a tooth pair",
+    )
     asperity_events: Switch = Field(
         default=True,
         description="whether each joining and detachment of a population's asperities is an event kept",

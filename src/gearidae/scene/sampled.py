@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from gearidae.laws.shafts import sampled_laws
-from gearidae.records import Events, Passages, Rows, sampled_columns
+from gearidae.records import Events, Impacts, Passages, Rows, sampled_columns
 from gearidae.scene.joints import has_pin, joints
 
 if TYPE_CHECKING:
@@ -30,4 +30,5 @@ def columns_of(scene: Scene) -> tuple[str, ...]:
 def rows_of(scene: Scene) -> tuple[type[Rows], ...]:
     """Kinds of rows that a run of a scene leaves."""
     has_passages = scene.roller is None and scene.run.passages
-    return (Events, Passages) if has_passages else (Events,)
+    impacts: tuple[type[Rows], ...] = (Impacts,) if scene.run.impacts else ()
+    return (Events, Passages, *impacts) if has_passages else (Events, *impacts)

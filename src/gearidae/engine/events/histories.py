@@ -74,6 +74,7 @@ def init_history(m: Model, k: int, pair: int, gap: float, middle: float) -> None
     if h.pair != pair:
         h.pair = pair
         h.in_contact = 1 if gap < m.scene.contact_gap and m.scene.population.flanks == 0 else 0
+        h.impact.begun = 0
         forget(m, k)
         for material in range(MATERIALS):
             if m.scene.material[material].stretch_limit > 0.0:

@@ -11,14 +11,16 @@ import numpy as np
 from gearidae.compiled import compiled
 from gearidae.engine.events.record import EVENT_NUMBERS
 from gearidae.engine.model.state import Floats, Model, Record
-from gearidae.engine.observers.passages import PASSAGE_NUMBERS, units
-from gearidae.records import COUNTERS, Block, Ending, EnergyBalance, Extremes, Passages, Statistics
+from gearidae.engine.observers import impacts as impact_rows
+from gearidae.engine.observers import passages as passage_rows
+from gearidae.records import COUNTERS, Block, Ending, EnergyBalance, Extremes, Impacts, Passages, Statistics
 
 if TYPE_CHECKING:
     from gearidae.engine.setup.problem import Problem
 
 __all__ = [
     "BLOCK_EVENTS",
+    "BLOCK_IMPACTS",
     "BLOCK_PASSAGES",
     "BLOCK_ROWS",
     "BLOCK_SECONDS",
@@ -45,6 +47,8 @@ BLOCK_EVENTS = 16_384
 """Events in a full block."""
 BLOCK_PASSAGES = 1024
 """Passages in a full block."""
+BLOCK_IMPACTS = 4096
+"""Impacts in a full block."""
 BLOCK_STEPS = 50_000
 """Steps after which a driver comes back to Python in any case."""
 BLOCK_SECONDS = 0.2
@@ -107,7 +111,7 @@ class SampleReader(Protocol):
 
 
 class Output(NamedTuple):
-    """Samples, events and passages of a block, before it is yielded.
+    """Samples and rows of a block, before it is yielded.
 
     Attributes
     ----------
@@ -115,11 +119,14 @@ class Output(NamedTuple):
     events : ndarray, shape (BLOCK_EVENTS, EVENT_NUMBERS)
     passages : ndarray, shape (BLOCK_PASSAGES, PASSAGE_NUMBERS)
         Scaled.
+    impacts : ndarray, shape (BLOCK_IMPACTS, IMPACT_NUMBERS)
+        Scaled.
     """
 
     rows: Floats
     events: Floats
     passages: Floats
+    impacts: Floats
 
     @classmethod
     def empty(cls, columns: int) -> Output:
@@ -127,7 +134,8 @@ class Output(NamedTuple):
         return cls(
             np.empty((BLOCK_ROWS, columns)),
             np.empty((BLOCK_EVENTS, EVENT_NUMBERS)),
-            np.empty((BLOCK_PASSAGES, PASSAGE_NUMBERS)),
+            np.empty((BLOCK_PASSAGES, passage_rows.PASSAGE_NUMBERS)),
+            np.empty((BLOCK_IMPACTS, impact_rows.IMPACT_NUMBERS)),
         )
 
     def before(self, m: Model, sample: int) -> Output:
@@ -157,15 +165,17 @@ class Output(NamedTuple):
         """
         driver = m.work.driver
         rows, events, passages = int(driver.rows), int(driver.events), int(driver.passages)
+        impacts = self.impacts[: int(driver.impacts)]
         block = Block(
             self.rows[:rows].copy(),
             self.events[:events].copy(),
             time * float(m.scene.time_unit),
             checkpoint,
             *kept,
-            passages=self.passages[:passages] * units(m.scene) if passages else Passages.no_table(),
+            passages=self.passages[:passages] * passage_rows.units(m.scene) if passages else Passages.no_table(),
+            impacts=impacts * impact_rows.units(m.scene) if len(impacts) else Impacts.no_table(),
         )
-        driver.rows = driver.events = driver.passages = 0
+        driver.rows = driver.events = driver.passages = driver.impacts = 0
         return block
 
 

@@ -21,6 +21,7 @@ from gearidae.laws.shafts import SHAFT_LAWS
 from gearidae.records import COUNTERS, RUN_PARTS
 from gearidae.records.energy import ENERGY_SUMS
 from gearidae.records.extremes import ASPERITY_COUNTS, FORCE_EXTREMES, SPEED_EXTREMES
+from gearidae.records.impacts import KEPT
 from gearidae.records.passages import SINCE_LAST
 from gearidae.records.quantity import (
     COUNT_HIGH,
@@ -73,6 +74,11 @@ HISTORY_FIELDS: Final = (
         "direction of sliding, -1 or 1; `STUCK`, or 0 while nothing rubs: see `record_types`",
         low=-1,
         high=STUCK,
+    ),
+    Quantity(
+        "impact",
+        "what its contact has done so far",
+        kind=(count("begun", "2 from an onset, 1 from where a run has met the contact", high=2), *KEPT),
     ),
 )
 

@@ -131,6 +131,7 @@ FOLLOW: Final = record_type(  # 1 for each observer of the run that is wanted
     ("extremes", INT),  # extremes of the run
     ("exposures", INT),  # exposures of the flanks
     ("passages", INT),  # table of passages
+    ("impacts", INT),  # table of impacts
     ("gear", INT),  # extremes of the gear's speed, and where it stands
 )
 

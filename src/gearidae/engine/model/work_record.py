@@ -99,6 +99,7 @@ DRIVER: Final = record_type(
     ("rows", INT),  # samples in the present block
     ("events", INT),  # events in the present block
     ("passages", INT),  # passages in the present block
+    ("impacts", INT),  # impacts in the present block
     ("pending", INT),  # flag of a step that waits for room, plus 1; 0 for none, -1 for a start
     ("done", INT),  # 1 at the end of the run
     ("error", INT),  # IDA's flag, or one of the driver's own
@@ -170,6 +171,14 @@ EXPOSING: Final = record_type(
     ("work", REAL),  # sliding work of the last intervals; former ones count less [F sigma]
     ("counted", REAL),  # how many steps they had [1]
     ("pair", EXPOSED, (2 * SLOTS_HIGH,)),
+)
+
+FOLLOWED: Final = record_type(  # the load of a pair in contact, where its impact has last been followed
+    ("time", REAL),  # [tau]
+    ("force", REAL),  # [F]
+    ("force_rate", REAL),  # [F/tau]
+    ("power", REAL),  # that it takes from the motion [F sigma/tau]
+    ("power_rate", REAL),  # [F sigma/tau^2]
 )
 
 NOTED: Final = record_type(  # a pair where its force was evaluated
@@ -338,4 +347,5 @@ WORK: Final = record_type(
         REAL,
         (2 * SLOTS_HIGH,),
     ),  # number and a half of the pair within the cut-off; 0 for none, by history
+    ("impact", FOLLOWED, (2 * SLOTS_HIGH,)),  # by history
 )

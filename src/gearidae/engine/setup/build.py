@@ -7,7 +7,15 @@ import math
 
 import numpy as np
 
-from gearidae.engine.compiling import ELASTIC, EXPOSURES, FRICTION, POPULATION, SOLVER, make_part_ready
+from gearidae.engine.compiling import (
+    ELASTIC,
+    EXPOSURES,
+    FRICTION,
+    IMPACTS,
+    POPULATION,
+    SOLVER,
+    make_part_ready,
+)
 from gearidae.engine.elastic.layout import DEPTH_HIGH, ContactBounds
 from gearidae.engine.elastic.rows import scratch_size
 from gearidae.engine.events.histories import begin
@@ -369,6 +377,7 @@ def _begun(m: Model, scene: Scene, motion: list[float], skipped: dict[str, int])
         (EXPOSURES, s.bins > 0),
         (POPULATION, s.population.flanks > 0),
         (FRICTION, s.friction.on != 0 or s.orbit != 0.0),
+        (IMPACTS, scene.run.impacts),
     )
     for part, wanted in parts:
         if wanted:
@@ -379,6 +388,7 @@ def _begun(m: Model, scene: Scene, motion: list[float], skipped: dict[str, int])
     s.follow.balance, s.follow.extremes, s.follow.exposures = scene.run.balance, 1, s.bins > 0
     s.follow.gear = int(s.gear_inverse_mass > 0.0)
     s.follow.passages = int(scene.run.passages and s.follow.gear)
+    s.follow.impacts = int(scene.run.impacts)
     s.follow.friction = int(scene.run.balance and s.friction.rubs != 0)
     if s.follow.balance != 0:
         open_balance(m, y)

@@ -23,8 +23,9 @@ from gearidae.engine.population.layout import ARC, HEIGHT, JOINED, KIND, column
 
 @compiled(inline=True)
 def keeps_friction_work(m: Model) -> bool:
-    """Whether the work of friction is kept: where there are exposures, and flanks have friction."""
-    return bool(m.scene.bins > 0 and m.scene.exposure_rows > ROWS.friction)
+    """Whether the work of friction is kept: where there are exposures or impacts, and flanks have friction."""
+    exposed = m.scene.bins > 0 and m.scene.exposure_rows > ROWS.friction
+    return bool(exposed or (m.scene.follow.impacts != 0 and m.scene.friction.flanks != 0))
 
 
 @compiled(inline=True)
@@ -52,11 +53,14 @@ def add_friction_work(m: Model, weight: float, rate_weight: float) -> None:
 
 @compiled_once(FRICTION)
 def divide_friction_work(m: Model, y: Floats) -> None:
-    """Add the work of a step to the places where pairs rub at a state."""
+    """Add the work of a step to the impacts of the pairs, and to the places where they rub at a state."""
     for k in range(m.scene.histories):
         exposure, pair = m.work.exposing.pair[k], int(m.state.history[k].pair)
         work, exposure.rubbed = exposure.rubbed, 0.0
         if work == 0.0:
+            continue
+        m.state.history[k].impact.friction_loss += work
+        if m.scene.bins == 0:
             continue
         coast = flank_of_history(m, k)
         row = row_of(m, coast, pair) + ROWS.friction * m.scene.bins
