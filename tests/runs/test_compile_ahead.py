@@ -15,7 +15,8 @@ from gearidae.compiled import is_ready
 from gearidae.engine import compiling
 
 gd.compile()
-parts = [compiling.SOLVER, compiling.ELASTIC, compiling.EXPOSURES, compiling.POPULATION, compiling.FRICTION]
+names = ["SOLVER", "ELASTIC", "EXPOSURES", "POPULATION", "FRICTION", "IMPACTS"]
+parts = [getattr(compiling, name) for name in names]
 print(all(is_ready(part) for part in parts))
 """
 

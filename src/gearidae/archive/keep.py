@@ -14,6 +14,7 @@ from gearidae.archive.variables import (
     ENERGY_TOTALS,
     EVENTS,
     EXPOSURES,
+    IMPACTS,
     OF_SWEPT_RUN,
     PASSAGES,
     RUN,
@@ -37,6 +38,7 @@ GROUPS = (
     "scene",
     "exposures",
     "passages",
+    "impacts",
     "samples",
     "events",
 )
@@ -133,6 +135,7 @@ def read_keep(keep: Iterable[str] | str | None, scene: Scene) -> OutputSelection
         "scene": ("scene",),
         "exposures": tuple(EXPOSURES),
         **({"passages": tuple(PASSAGES)} if scene.roller is None else {}),
+        "impacts": (*IMPACTS, "impacts"),
         "samples": columns_of(scene),
         "events": (*EVENTS, "impacts"),
     }

@@ -1,4 +1,4 @@
-"""Rows of runs in datasets, events and passages: along a dimension of their own, labelled by their runs."""
+"""Rows of runs in datasets, events, passages and impacts: along a dimension of their own, labelled by their runs."""
 
 from __future__ import annotations
 
@@ -127,7 +127,7 @@ def own_rows(ds: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        With the events and passages only that carry the labels of its runs.
+        With the rows only that carry the labels of its runs.
 
     Raises
     ------

@@ -64,7 +64,7 @@ def swept_dims(ds: xr.Dataset) -> tuple[str, ...]:
 
 
 def runs(ds: xr.Dataset) -> Iterator[tuple[dict[str, Any], xr.Dataset]]:
-    """Go through the runs of a dataset, each with its own events and passages only.
+    """Go through the runs of a dataset, each with its own rows only.
 
     Parameters
     ----------
@@ -212,7 +212,7 @@ def single_run(ds: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        With the scene, the statistics, the events and the passages of that run alone, where `gearidae.simulate`
+        With the scene, the statistics, the rows of that run alone, where `gearidae.simulate`
         puts them.
 
     Raises

@@ -1,4 +1,4 @@
-"""Datasets as pandas tables: time series, events and passages."""
+"""Datasets as pandas tables: time series, events, passages and impacts."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from gearidae.archive.rows import own_rows
 from gearidae.archive.select import swept_dims
 from gearidae.archive.variables import ROW_VARIABLES
 from gearidae.errors import SceneError
-from gearidae.records import Rows
+from gearidae.records import Impacts, Rows
 
 LARGEST_TABLE = 2**31
 """Size of a table [bytes] above which it is refused unless more is allowed."""
@@ -70,20 +70,20 @@ def time_series(
 
 
 def row_table(ds: xr.Dataset, kind: type[Rows]) -> pd.DataFrame:
-    """Make a table of the events or the passages.
+    """Make a table of the events, the passages or the impacts.
 
     Parameters
     ----------
     ds : xarray.Dataset
         A single run or a sweep, or runs picked from one.
     kind : type of Rows
-        `gearidae.records.Events` or `gearidae.records.Passages`.
+        `gearidae.records.Events`, `gearidae.records.Passages` or `gearidae.records.Impacts`.
 
     Returns
     -------
     pandas.DataFrame
-        A row for each event or passage of these runs: the swept keys, ``sam_fraction``, ``time`` [s], and the other
-        variables without the dimension in front of their names; ``kind`` and ``flank`` in words (as categories).
+        A row for each event, passage or impact of these runs: the swept keys, ``sam_fraction``, ``time`` [s], and the
+        other variables without the dimension in front of their names; ``kind`` and ``flank`` in words (as categories).
 
     Raises
     ------
@@ -91,8 +91,10 @@ def row_table(ds: xr.Dataset, kind: type[Rows]) -> pd.DataFrame:
         If they have not been kept.
     """
     if kind.dim not in ds.dims:
-        advice = f"keep=[..., '{kind.field}']"
-        raise SceneError(kind.field, "(missing)", f"have not been kept: sweep with {advice}")
+        advice = f"sweep with keep=[..., '{kind.field}']"
+        if kind is Impacts:
+            advice = "run with run.impacts = true, and if a sweep keeps parts of its runs " + advice
+        raise SceneError(kind.field, "(missing)", f"have not been kept: {advice}")
     ds, known, prefix = own_rows(ds), ROW_VARIABLES[kind], f"{kind.dim}_"
     labels = [str(name) for name in ds.data_vars if str(name).startswith(prefix) and name not in known]
     columns: dict[str, Any] = {}

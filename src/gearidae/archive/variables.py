@@ -30,6 +30,7 @@ from gearidae.records import (
     Events,
     Flank,
     Rows,
+    impacts,
     passages,
 )
 from gearidae.records import extremes as records
@@ -192,9 +193,29 @@ _PASSAGES = (
     Variable("passage_sam_fraction", ("passage",), "1", "SAM fraction of the run the passage belongs to"),
 )
 PASSAGES: Mapping[str, Variable] = {variable.name: variable for variable in _PASSAGES}
+_IMPACTS = (
+    *(
+        Variable(
+            f"tooth_impact_{quantity.name}",
+            ("tooth_impact",),
+            quantity.unit.si,
+            quantity.meaning,
+            impacts.Impacts.columns[quantity.name].dtype,
+            Flank if quantity.name == "flank" else None,
+            quantity.comment,
+        )
+        for quantity in impacts.COLUMNS
+    ),
+    Variable("tooth_impact_tooth", ("tooth_impact",), "1", "tooth of the pinion, counted from 0", np.int64),
+    Variable(
+        "tooth_impact_sam_fraction", ("tooth_impact",), "1", "SAM fraction of the run the impact belongs to"
+    ),
+)
+IMPACTS: Mapping[str, Variable] = {variable.name: variable for variable in _IMPACTS}
 ROW_VARIABLES: Final[Mapping[type[Rows], Mapping[str, Variable]]] = {
     Events: {**EVENTS, **POPULATION_EVENTS},
     passages.Passages: PASSAGES,
+    impacts.Impacts: IMPACTS,
 }
 """What rows of each kind have."""
 
@@ -341,6 +362,7 @@ def by_name() -> dict[str, Variable]:
         **EVENTS,
         **POPULATION_EVENTS,
         **PASSAGES,
+        **IMPACTS,
         **RUN,
         **OF_SWEPT_RUN,
         **VERDICT,

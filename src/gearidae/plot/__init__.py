@@ -18,6 +18,7 @@ from gearidae.plot.files import write as write
 from gearidae.plot.gears import gap as gap
 from gearidae.plot.gears import gear_speed as gear_speed
 from gearidae.plot.gears import transmission_error as transmission_error
+from gearidae.plot.impacts import impact_forces as impact_forces
 from gearidae.plot.journal import style as style
 from gearidae.plot.outcome import outcome as outcome
 from gearidae.plot.overview import overview as overview

@@ -41,7 +41,10 @@ KEPT: Final = (
         comment="friction included",
     ),
     Quantity(
-        "friction_loss", "what friction of the flanks has taken of it", ENERGY, comment="NaN without a balance"
+        "friction_loss",
+        "what friction of the flanks has taken of it",
+        ENERGY,
+        comment="NaN without a balance",
     ),
 )
 """What is kept of a contact while it lasts."""
@@ -52,16 +55,14 @@ COLUMNS: Final = (*WHICH, *KEPT)
 class Impacts(Rows):
     """Contacts of tooth pairs in the order of their ends, with `COLUMNS` in SI units.
 
-    A contact that lasts at the end of a run has its row in the run that goes on.
+    A contact that lasts at the end of a run has its row in the run that goes on. The dimension `impact` is that of
+    the impacts that ringing shows.
     """
 
-    dim = "impact"
+    dim = "tooth_impact"
     field = "impacts"
     columns: ClassVar[Mapping[str, RowColumn]] = {
-        **{
-            column.name: RowColumn(np.int64 if column.kind == INT else np.float64)
-            for column in COLUMNS
-        },
+        **{column.name: RowColumn(np.int64 if column.kind == INT else np.float64) for column in COLUMNS},
         "flank": RowColumn(FLAG),
     }
 

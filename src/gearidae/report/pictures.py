@@ -22,6 +22,7 @@ _GEARS = {
     "overview": "Speed of the gear and torque of the tooth contacts on it",
     "gap": "Smallest gap between the teeth, drive flank",
     "power_spectrum": "Power spectrum of the gear's speed",
+    "impact_forces": "Largest forces of the impacts",
 }
 _RINGING = "impact_spectrum"
 _SINGLE = {_RINGING: "Spectrum of the ringing after mesh impacts"}

@@ -14,7 +14,7 @@ SCENES: Final[tuple[tuple[str, dict[str, Any]], ...]] = (
     (_GEARS, {"contact.roughness": "discrete"}),
     (_GEARS, {"contact.friction": 0.1, "gears.hub_friction": 0.1, "gears.gear_hub_radius": 5e-6}),
     (_GEARS, {"contact.roughness": "discrete", "contact.friction": 0.1}),
-    (_GEARS, {"run.exposures": 2, "surface.hamaker": 1e-21}),
+    (_GEARS, {"run.exposures": 2, "surface.hamaker": 1e-21, "run.impacts": True}),
     ("roller_slow", {"contact.bodies": "rigid"}),
     ("roller_slow", {"contact.bodies": "elastic"}),
 )

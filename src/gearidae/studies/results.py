@@ -17,7 +17,7 @@ from gearidae.archive.tables import LARGEST_TABLE, row_table, run_labels, time_s
 from gearidae.archive.totals import energy_balance
 from gearidae.archive.variables import EXTREMES, STANDSTILL_LIST
 from gearidae.errors import SceneError
-from gearidae.records import Events, Passages
+from gearidae.records import Events, Impacts, Passages
 from gearidae.scene import Scene
 from gearidae.scene.carried import number_of
 from gearidae.scene.units import cf_unit, from_text
@@ -232,6 +232,13 @@ class Results:
     def passages(self) -> pd.DataFrame:
         """Make a table of the passages of these runs: forces since the last mesh exit, and running sums of energies."""
         return row_table(self._ds, Passages)
+
+    def impacts(self) -> pd.DataFrame:
+        """Make a table of the impacts of these runs, one row for each contact of a tooth pair, onset to separation.
+
+        Times and speeds, forces, impulse and loss of each, from the engine's own steps; needs ``run.impacts``.
+        """
+        return row_table(self._ds, Impacts)
 
     def _title(self) -> str:
         """Say what the dataset is, in a line."""

@@ -38,7 +38,7 @@ def assert_runs_close(
     per : mapping of str to float, optional
         Tolerances of single variables in place of `rtol`; infinite for one that may differ, also ``events``.
     ignore : sequence of str, optional
-        Variables of the reference that the run may lack, also ``events`` and ``passages``.
+        Variables of the reference that the run may lack, also ``events``, ``passages`` and ``impacts``.
 
     Raises
     ------
@@ -76,7 +76,7 @@ def assert_runs_close(
 
 
 def _check_ignored(reference: xr.Dataset, ignore: Sequence[str]) -> None:
-    known = [*map(str, reference.variables), *(f"{rows.dim}s" for rows in ROWS)]
+    known = [*map(str, reference.variables), *(rows.field for rows in ROWS)]
     for name in [ignore] if isinstance(ignore, str) else ignore:
         if name not in known:
             meant = did_you_mean(str(name), known)
@@ -87,7 +87,7 @@ def _check_ignored(reference: xr.Dataset, ignore: Sequence[str]) -> None:
 def _lacking(run: xr.Dataset, reference: xr.Dataset, ignore: set[str]) -> Iterator[str]:
     """Say what of a reference a run lacks, or has in another unit."""
     left_out = set()
-    for dim, many in ((rows.dim, f"{rows.dim}s") for rows in ROWS):
+    for dim, many in ((rows.dim, rows.field) for rows in ROWS):
         there = reference.sizes.get(dim, 0)
         if there and not run.sizes.get(dim, 0) and many not in ignore:
             yield f"  {many}: the run has none, the reference has {there}"

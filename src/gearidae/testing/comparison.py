@@ -12,10 +12,10 @@ import xarray as xr
 from gearidae.archive.rows import DIMS
 from gearidae.archive.select import run_scene, run_value, runs, swept_dims
 from gearidae.archive.totals import balance_of
-from gearidae.archive.variables import ENERGY_BALANCE, EVENTS, EXTREMES, OF_SWEPT_RUN, PASSAGES, RUN
+from gearidae.archive.variables import ENERGY_BALANCE, EVENTS, EXTREMES, OF_SWEPT_RUN, ROW_VARIABLES, RUN
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
-from gearidae.records import EventKind
+from gearidae.records import EventKind, Impacts, Passages, Rows
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -24,10 +24,13 @@ COLUMNS: Final = ("difference", "scale", "relative", "where")
 _LEFT_OUT: Final = {*RUN, *OF_SWEPT_RUN, *EVENTS, "residual", "residual_bound"}
 """Effort and errors of a run, which say nothing of its motion; events are compared as a sequence."""
 _WHICH: Final = ("pair", "flank", "tooth", "sam_fraction")
-"""What says which passage it is."""
+"""What says which row it is."""
 _EVENT: Final = ("event_time", "event_kind", "event_pair", "event_flank")
-_PASSAGE: Final = ("passage_time", "passage_pair", "passage_flank")
-"""What rows must have to be compared one by one."""
+"""What events must have to be compared one by one."""
+_ROWS: Final[tuple[type[Rows], ...]] = (Passages, Impacts)
+"""Rows that are compared one by one."""
+_NEEDED: Final = ("time", "pair", "flank")
+"""What they must have for it."""
 _EXCHANGED: Final = ("stored_change", "kinetic_change", "radius_work", "model_change")
 """Energies of either sign, which may cancel: their scale is that of all that has been exchanged."""
 
@@ -58,7 +61,8 @@ def compare(a: xr.Dataset, b: xr.Dataset) -> pd.DataFrame:
         have their largest magnitude as scale, speeds, forces and times of a run the largest speed, the largest force
         and the duration, energies of either sign all that has been exchanged. The row ``events`` has the largest
         difference of the times of events that are the same one by one, or infinity at the first that is another.
-        Passages have a row for each of their variables, or where they are not of the same pairs ``passages`` has
+        Passages and impacts have a row for each of their variables, or where they are not of the same pairs
+        ``passages`` or ``impacts`` has
         infinity. NaN equals NaN. Solver statistics, dates and the residual of the energy balance are left out.
 
     Raises
@@ -144,8 +148,9 @@ def _differences(a: xr.Dataset, b: xr.Dataset) -> Iterator[tuple[str, Difference
             yield name, _of_samples(variable, b[name])
     if all(name in run for run in (a, b) for name in _EVENT):
         yield "events", _of_events(a, b)
-    if all(name in run for run in (a, b) for name in _PASSAGE):
-        yield from _of_passages(a, b, scales)
+    for kind in _ROWS:
+        if all(f"{kind.dim}_{name}" in run for run in (a, b) for name in _NEEDED):
+            yield from _of_rows(a, b, kind, scales)
 
 
 def _word(run: xr.Dataset, name: str) -> Any:
@@ -273,24 +278,27 @@ def _of_events(a: xr.Dataset, b: xr.Dataset) -> Difference:
     return Difference(difference, span, _relative(difference, span), at)
 
 
-def _of_passages(
-    a: xr.Dataset, b: xr.Dataset, scales: Mapping[str, float]
+def _of_rows(
+    a: xr.Dataset, b: xr.Dataset, kind: type[Rows], scales: Mapping[str, float]
 ) -> Iterator[tuple[str, Difference]]:
-    """Compare passages one by one, over the scales of the whole run; infinite where they are not of the same pairs."""
+    """Compare rows one by one, over the scales of the whole run; infinite where they are not of the same pairs."""
     pairs, other_pairs = (
-        np.stack([run["passage_pair"].values, run["passage_flank"].values]) for run in (a, b)
+        np.stack([run[f"{kind.dim}_{name}"].values for name in ("pair", "flank")]) for run in (a, b)
     )
     if not np.array_equal(pairs, other_pairs):
         common = min(pairs.shape[1], other_pairs.shape[1])
         other = (pairs[:, :common] != other_pairs[:, :common]).any(axis=0)
         first = int(np.argmax(other)) if other.any() else common
-        yield "passages", Difference(math.inf, math.nan, math.inf, f"passage {first}: not of the same pair")
+        yield (
+            kind.field,
+            Difference(math.inf, math.nan, math.inf, f"{kind.dim} {first}: not of the same pair"),
+        )
         return
     by_unit = {"N": scales.get("largest_mesh_force", 0.0), "s": max(_duration(a), _duration(b))}
-    for name, variable in PASSAGES.items():
-        if name in a and name in b and name.removeprefix("passage_") not in _WHICH:
+    for name, variable in ROW_VARIABLES[kind].items():
+        if name in a and name in b and (short := name.removeprefix(f"{kind.dim}_")) not in _WHICH:
             difference = _of_samples(a[name], b[name])
-            total = scales.get(name.removeprefix("passage_"), by_unit.get(variable.units, 0.0))
+            total = scales.get(short, by_unit.get(variable.units, 0.0))
             size = max(difference.scale, total)
             yield name, difference._replace(scale=size, relative=_relative(difference.difference, size))
 

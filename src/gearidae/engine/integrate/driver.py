@@ -172,7 +172,9 @@ class Output(NamedTuple):
             time * float(m.scene.time_unit),
             checkpoint,
             *kept,
-            passages=self.passages[:passages] * passage_rows.units(m.scene) if passages else Passages.no_table(),
+            passages=self.passages[:passages] * passage_rows.units(m.scene)
+            if passages
+            else Passages.no_table(),
             impacts=impacts * impact_rows.units(m.scene) if len(impacts) else Impacts.no_table(),
         )
         driver.rows = driver.events = driver.passages = driver.impacts = 0
