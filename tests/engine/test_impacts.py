@@ -1,5 +1,7 @@
 """The table of impacts: force, impulse and loss of each contact of a pair, from its onset to its separation."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,7 @@ import gearidae as gd
 from gearidae.engine import solve
 from gearidae.engine.backend import run_blocks
 from gearidae.engine.integrate import driver, native, portable
+from gearidae.engine.observers.impacts import IMPACTS_AT_ONCE
 from gearidae.engine.setup.build import make_problem
 from gearidae.records import EventKind, Impacts, Statistics
 
@@ -14,14 +17,14 @@ RATTLE = gd.load_case("cases/alternating.toml").replace(
     {
         "contact.bodies": "rigid",
         "initial.mesh_phase": 0.9,  # one pair alone on the path of contact: the mesh force is its own
-        "run.duration": 3.4e-6,
+        "run.duration": 3.6e-6,
         "run.samples": "off",
         "run.rtol": 1e-7,
         "run.impacts": True,
     }
 )
 """Two impacts with flight before, between and behind them."""
-FRICTION = {"contact.friction": 0.1, "contact.friction_law": "coulomb"}
+FRICTION = {"contact.friction": 0.1, "contact.friction_law": "coulomb", "run.duration": 3.5e-6}
 DISCRETE = {"contact.roughness": "discrete", "run.duration": 2e-6}
 LAWS = {
     "adhesion": {},
@@ -32,6 +35,7 @@ LAWS = {
 }
 TURNING = RATTLE.replace({"initial.mesh_phase": 0.3, "run.duration": 1.2e-4, "run.rtol": 1e-6})
 """Through several passages."""
+near = partial(pytest.approx, abs=0.0)
 
 
 @pytest.fixture(params=["native", "sksundae"])
@@ -96,12 +100,12 @@ def test_against_integrals_of_a_densely_sampled_run(law, backend):
         inside = time[(time > rows.begin[i]) & (time < rows.time[i])]
         at = np.concatenate([[rows.begin[i]], inside, [rows.time[i]]])
         pushed, moved = np.interp(at, time, force), np.interp(at, time, gap)
-        assert rows.impulse[i] == pytest.approx(np.trapezoid(pushed, at), rel=accuracy)
-        assert rows.largest_force[i] == pytest.approx(pushed.max(), rel=1e-4)
-        assert rows.smallest_force[i] == pytest.approx(pushed.min(), rel=1e-3)
+        assert rows.impulse[i] == near(np.trapezoid(pushed, at), rel=accuracy)
+        assert rows.largest_force[i] == near(pushed.max(), rel=1e-4)
+        assert rows.smallest_force[i] == near(pushed.min(), rel=1e-3)
         assert rows.largest_force_time[i] == pytest.approx(at[pushed.argmax()], abs=2e-3 * rows.duration[i])
         if not discrete and law != "the changing radius":
-            assert rows.energy_lost[i] == pytest.approx(-np.trapezoid(pushed, moved), rel=accuracy)
+            assert rows.energy_lost[i] == near(-np.trapezoid(pushed, moved), rel=accuracy)
 
 
 @pytest.mark.parametrize("law", [*LAWS, "friction", "friction of discrete asperities"])
@@ -123,11 +127,11 @@ def test_impulses_and_losses_add_up_to_momentum_and_energy(law):
         momentum = scene.gears.pinion_inertia * (pinion[-1] - pinion[0]) / radius
         driven = run.samples["drive_torque"][0] * run.time[-1] / radius
         impulses = np.where(rows.flank == 0, rows.impulse, -rows.impulse).sum()
-        assert impulses == pytest.approx(driven - momentum, rel=2e-6 if discrete else 1e-4)
+        assert impulses == near(driven - momentum, rel=2e-6 if discrete else 1e-4)
     friction = balance.drive_friction_loss + balance.coast_friction_loss
     taken = balance.adhesion_loss + balance.film_loss + friction + balance.stored_change - balance.radius_work
-    assert rows.energy_lost.sum() == pytest.approx(taken, rel=1e-5 if discrete else 3e-3)
-    assert rows.friction_loss.sum() == pytest.approx(friction, rel=1e-12)
+    assert rows.energy_lost.sum() == near(taken, rel=1e-5 if discrete else 3e-3)
+    assert rows.friction_loss.sum() == near(friction, rel=1e-12)
     assert (friction > 0.0) == rubs
 
 
@@ -149,11 +153,11 @@ def test_a_roller_has_impacts(backend):
     row = dict(zip(Impacts.columns, impact, strict=True))
     inside = (run.time >= row["begin"]) & (run.time <= row["time"])
     force = run.samples["force"][inside]
-    assert row["impulse"] == pytest.approx(np.trapezoid(force, run.time[inside]), rel=1e-4)
-    assert row["largest_force"] == pytest.approx(force.max(), rel=1e-4)
+    assert row["impulse"] == near(np.trapezoid(force, run.time[inside]), rel=1e-4)
+    assert row["largest_force"] == near(force.max(), rel=1e-4)
     # the momentum of the roller: nothing but its contact acts on it
     change = roller.roller.mass * (run.samples["speed"][-1] - run.samples["speed"][0])
-    assert row["impulse"] == pytest.approx(change, rel=1e-3)
+    assert row["impulse"] == near(change, rel=1e-3)
 
 
 # -- what it does not depend on --------------------------------------------------------------------------------------
@@ -164,7 +168,7 @@ def test_sampling_and_blocks_do_not_matter(backend, monkeypatch):
     wanted = solve(scene, backend=backend)
     sampled = solve(scene, samples=3001, backend=backend)
     tables_equal(sampled.impacts, wanted.impacts)
-    monkeypatch.setattr(driver, "BLOCK_IMPACTS", 2 * driver.IMPACTS_AT_ONCE)
+    monkeypatch.setattr(driver, "BLOCK_IMPACTS", 2 * IMPACTS_AT_ONCE)
     monkeypatch.setattr(native, "FIRST_STEPS", 1)
     monkeypatch.setattr(native, "BLOCK_STEPS", 1)
     monkeypatch.setattr(portable, "BLOCK_SECONDS", 0.0)
@@ -172,7 +176,9 @@ def test_sampling_and_blocks_do_not_matter(backend, monkeypatch):
 
 
 def test_without_impacts_the_run_is_the_same(backend):
-    with_table, without = (solve(RATTLE.replace({"run.impacts": on}), backend=backend) for on in (True, False))
+    with_table, without = (
+        solve(RATTLE.replace({"run.impacts": on}), backend=backend) for on in (True, False)
+    )
     assert len(with_table.impacts) > 0
     assert len(without.impacts) == 0
     assert with_table.statistics.steps == without.statistics.steps
@@ -200,14 +206,16 @@ def test_a_run_that_goes_on_keeps_the_contact_that_it_began(backend):
     whole = solve(scene, backend=backend)
     cut = middle_of_an_impact(whole)
     first = gd.simulate(scene, t_end=cut, backend=backend)
-    rest = gd.simulate(scene, t_end=3.4e-6 - cut, start=first, backend=backend)
+    rest = gd.simulate(scene, t_end=3.6e-6, start=first, backend=backend)
     table = gd.concat([first, rest], dim="time").gearidae.impacts()
     assert len(first.gearidae.impacts()) + len(rest.gearidae.impacts()) == len(table) == len(whole.impacts)
     assert rest.gearidae.impacts().begin[0] < cut
     for name in Impacts.columns:
         if name != "flank":
-            # a run that begins anew within a contact is another to some hundred tolerances
-            np.testing.assert_allclose(table[name], getattr(whole.impacts, name), rtol=1e-5, atol=1e-30)
+            # a run that begins anew within a contact is another to some hundred tolerances, and has other steps, so
+            # that the cubic at the sharp end of the pull is another
+            accuracy = 1e-3 if name == "smallest_force" else 1e-5
+            np.testing.assert_allclose(table[name], getattr(whole.impacts, name), rtol=accuracy, atol=0.0)
 
 
 def test_a_contact_that_a_run_meets_begins_with_it():
@@ -216,26 +224,34 @@ def test_a_contact_that_a_run_meets_begins_with_it():
     first = gd.simulate(scene.replace({"run.impacts": False}), t_end=cut)
     with pytest.raises(gd.SceneError, match=r"run.impacts = true"):
         first.gearidae.impacts()
-    row = gd.simulate(scene, t_end=3.4e-6 - cut, start=first).gearidae.impacts().iloc[0]
-    assert row["begin"] == pytest.approx(cut, rel=1e-12)
+    row = gd.simulate(scene, t_end=3.6e-6, start=first).gearidae.impacts().iloc[0]
+    assert row["begin"] == near(cut, rel=1e-12)
     assert np.isnan(row["approach_speed"])
     assert row["impulse"] > 0.0
 
 
 def test_a_resumed_run_has_the_same_rows(monkeypatch):
     """From a checkpoint within a contact, to the last bit."""
-    monkeypatch.setattr(native, "CHECKPOINT_STEPS", 300)
-    problem = make_problem(TURNING)
-    blocks = list(run_blocks(problem, TURNING.run.rtol, 0, "native", Statistics()))
-    rows = np.concatenate([block.impacts for block in blocks])
-    times = [(place, block.time) for place, block in enumerate(blocks) if block.checkpoint is not None]
-    begin, end = Impacts.of_table(rows).begin[-2], Impacts.of_table(rows).time[-2]
-    place = next(place for place, time in times if begin < time < end)
-    rest = run_blocks(
-        make_problem(TURNING), TURNING.run.rtol, 0, "native", Statistics(), blocks[place].checkpoint
-    )
-    resumed = np.concatenate([*(block.impacts for block in blocks[: place + 1]), *(b.impacts for b in rest)])
-    np.testing.assert_array_equal(resumed, rows)
+    monkeypatch.setattr(portable, "CHECKPOINT_STEPS", 9)
+    scene = RATTLE.replace({"run.rtol": 1e-5})
+
+    def blocks_from(checkpoint=None):
+        return list(run_blocks(make_problem(scene), 1e-5, 0, "sksundae", Statistics(), checkpoint))
+
+    def table(blocks):
+        return np.concatenate([block.impacts for block in blocks])
+
+    whole = blocks_from()
+    rows = Impacts.of_table(table(whole))
+    inside = [
+        place
+        for place, block in enumerate(whole)
+        if block.checkpoint is not None and rows.begin[-1] < block.time < rows.time[-1]
+    ]
+    assert len(inside) > 2
+    for place in inside[::3]:
+        resumed = [*whole[: place + 1], *blocks_from(whole[place].checkpoint)]
+        np.testing.assert_array_equal(table(resumed), rows.table())
 
 
 # -- archives, tables and pictures -----------------------------------------------------------------------------------
@@ -270,7 +286,10 @@ def test_a_histogram_of_forces():
     assert heights == len(run.gearidae.impacts()) > 3
     assert ax.get_xlabel() == "largest force of an impact (µN)"
     sweep = gd.sweep(RATTLE, {"coating.sam_fraction": [0.6, 1.0]})
-    curves = gd.plot.impact_forces(sweep).patches
-    assert [curve.get_data().values.sum() for curve in curves] == [2, 2]
+    curves, counts = (
+        gd.plot.impact_forces(sweep).patches,
+        sweep.gearidae.impacts()["sam_fraction"].value_counts(),
+    )
+    assert [curve.get_data().values.sum() for curve in curves] == [counts[0.6], counts[1.0]]
     with pytest.raises(gd.SceneError, match=r"run.impacts = false: must be true"):
         gd.plot.impact_forces(gd.simulate(RATTLE.replace({"run.impacts": False}), t_end=1e-7))

@@ -53,8 +53,8 @@ def to_dataset(scene: Scene, solution: Solution) -> xr.Dataset:
     -------
     xarray.Dataset
         Samples along ``time``, events along ``event``, passages along ``passage``, impacts along ``tooth_impact``,
-        scalar coordinate ``sam_fraction``, energy balance and extremes without a dimension; provenance, scene, solver statistics and
-        status as attributes. Everything in SI units.
+        scalar coordinate ``sam_fraction``, energy balance and extremes without a dimension; provenance, scene, solver
+        statistics and status as attributes. Everything in SI units.
     """
     fraction = scene.coating.sam_fraction
     variables: dict[Hashable, Any] = {
@@ -147,8 +147,8 @@ def combine(
     xarray.Dataset
         As `to_dataset`, with one dimension per swept key in front of ``time``. Samples that a run did not
         reach are NaN. Events, passages and impacts are ragged and therefore lie on a flat dimension each, labelled by
-        ``event_<dimension>``, ``passage_<dimension>`` and ``tooth_impact_<dimension>``. Scene, status, solver statistics and energy balance are
-        variables along the swept dimensions, the statistics' totals attributes.
+        ``event_<dimension>``, ``passage_<dimension>`` and ``tooth_impact_<dimension>``. Scene, status, solver
+        statistics and energy balance are variables along the swept dimensions, the statistics' totals attributes.
     """
     names = dimension_names(swept)
     dims = tuple(names.values())
