@@ -112,8 +112,8 @@ def test_against_integrals_of_a_densely_sampled_run(law, backend):
 def test_impulses_and_losses_add_up_to_momentum_and_energy(law):
     """Through flight at both ends: momentum of the pinion, energy balance of the run.
 
-    Of the mean law flanks pull a little beyond the gap at which they are in contact: 5e-5 of the impulse, 2e-3 of the
-    loss where a film is there, too. Asperities one by one do not.
+    Of the mean law flanks pull a little beyond the gap at which they are in contact: 5e-5 of the impulse, 2e-5 of the
+    loss by friction, 2e-3 of the loss where a film is there, too. Asperities one by one do not.
     """
     changes = {**LAWS, "friction": FRICTION, "friction of discrete asperities": FRICTION | DISCRETE}[law]
     scene = RATTLE.replace(changes)
@@ -131,7 +131,7 @@ def test_impulses_and_losses_add_up_to_momentum_and_energy(law):
     friction = balance.drive_friction_loss + balance.coast_friction_loss
     taken = balance.adhesion_loss + balance.film_loss + friction + balance.stored_change - balance.radius_work
     assert rows.energy_lost.sum() == near(taken, rel=1e-5 if discrete else 3e-3)
-    assert rows.friction_loss.sum() == near(friction, rel=1e-12)
+    assert rows.friction_loss.sum() == near(friction, rel=1e-12 if discrete else 1e-4)
     assert (friction > 0.0) == rubs
 
 
