@@ -20,11 +20,10 @@ import numpy as np
 from gearidae.compiled import compiled, compiled_once, name_type
 from gearidae.engine.compiling import IMPACTS
 from gearidae.engine.elastic.static_condensation import following_slope
+from gearidae.engine.laws.pairs import force_of_pair
 from gearidae.engine.model.record_types import Record
 from gearidae.engine.model.state import SLOTS_HIGH, Floats, Model, V, W
-from gearidae.engine.motion.pair_forces import force_of_pair
 from gearidae.engine.pairs.tooth_pairs import (
-    acts,
     contact_length,
     flank_of_history,
     history_of,
@@ -34,6 +33,7 @@ from gearidae.engine.pairs.tooth_pairs import (
 from gearidae.engine.population.contact_point import state_of_pair
 from gearidae.formulas.interpolation import turning_point
 from gearidae.formulas.quadrature import integral
+from gearidae.laws.pair_law import in_reach
 from gearidae.records import EVENT, EventKind
 from gearidae.records.impacts import COLUMNS, IMPACT
 
@@ -233,7 +233,7 @@ def _load_of(m: Model, t: float, y: Floats, yp: Floats, k: int) -> Load:
     """Load of the pair that the k-th history is about."""
     coast = flank_of_history(m, k)
     pair = state_of_pair(m, coast, m.state.history[k].pair, y)
-    if not acts(m, pair):
+    if not in_reach(m, pair.gap):
         return Load(0.0, 0.0, 0.0, 0.0)
     f, sign = force_of_pair(m, t, y, pair, False), 1.0 - 2.0 * coast
     by_gap = f.by_gap
