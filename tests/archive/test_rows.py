@@ -11,7 +11,8 @@ from gearidae.archive import combine, to_dataset
 from gearidae.archive.keep import read_keep
 from gearidae.archive.rows import rows_from
 from gearidae.archive.select import runs
-from gearidae.records import ROWS, Events, Passages
+from gearidae.records import Events, Passages
+from gearidae.scene.sampled import rows_of
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.samples": 11})
 ROLLER = gd.preset("roller_slow").replace({"run.samples": 11})
@@ -33,7 +34,7 @@ def sweep(make_solution):
 def test_rows_carry_the_labels_of_their_runs(sweep):
     ds, _, solutions = sweep
     for (label, run), solution in zip(runs(ds), solutions, strict=True):
-        for kind in ROWS:
+        for kind in rows_of(LOW):
             rows = getattr(solution, kind.field)
             assert run.sizes[kind.dim] == len(rows)
             np.testing.assert_array_equal(rows_from(run, kind).table(), rows.table())
