@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import gearidae as gd
-from gearidae.engine import solve
+from gearidae.engine import native, portable, solve
 from gearidae.engine.backend import run_blocks
-from gearidae.engine.integrate import driver, native, portable
+from gearidae.engine.integrate import driver
 from gearidae.engine.observers.impacts import IMPACTS_AT_ONCE
 from gearidae.engine.setup.build import make_problem
 from gearidae.records import EventKind, Impacts, Statistics
