@@ -215,14 +215,15 @@ from types import SimpleNamespace
 from gearidae.archive.variables import ENERGY_BALANCE
 from gearidae.engine.model.state import STATE
 from gearidae.formulas.quadrature import Ends
-from gearidae.laws.shafts import book_losses
+from gearidae.laws.shaft.drag import DRAG
+from gearidae.laws.shafts import ACTING, book_losses
 from gearidae.records.energy import (ENERGY_SUMS, LOSSES)
 from gearidae.records.quantity import in_si
 
 assert "viscous_loss" in LOSSES
 assert ENERGY_BALANCE["viscous_loss"].units == "J"
 scene = SimpleNamespace(
-    torque=[SimpleNamespace(drag=0.0, viscous=3.0, spring=0.0, spring_damping=0.0)] * 2,
+    torque=[SimpleNamespace(acts=1 << ACTING.index(DRAG), drag=0.0, viscous=3.0)] * 2,
     force_unit=5.0, length_unit=7.0, time_unit=1.0, gear_radius=1.0
 )
 energy, time = np.zeros(1, STATE["energy"])[0], 0.25
