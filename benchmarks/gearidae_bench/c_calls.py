@@ -50,8 +50,8 @@ def _finish(place, numbers, flag, events):  # type: ignore[no-untyped-def]
     room = block[:_PASSAGES_AT].reshape((BLOCK_EVENTS, EVENT_NUMBERS))
     passages = block[_PASSAGES_AT:].reshape((BLOCK_PASSAGES, PASSAGE_NUMBERS))
     driver.time = a[VECTORS * n]
-    out = Output(room, room, passages)
-    if not has_room(driver.events, driver.passages, out):  # nobody reads them
+    out = Output(room, room, passages, room)  # no samples are written here, and no scene keeps impacts
+    if not has_room(driver.events, driver.passages, 0, out):  # nobody reads them
         driver.events = driver.passages = 0
     between = (a[2 * n : 3 * n], a[3 * n : 4 * n])
     afresh = finish_step(m, driver.time, a[:n], a[n : 2 * n], between, flag, out)

@@ -142,7 +142,7 @@ def handle_event(m: Model, t: float, y: Floats, room: Floats) -> int:
     The engine asks its own drivers to begin anew at a mesh mark where their steps are longer than the tip relief
     takes to part a pair. The other methods rely on their error test alone: their step is said to have no length.
     """
-    switched = switch(m, t, y, y, (0.0, 0.0), Output(room, room, room), (0, 0))
+    switched = switch(m, t, y, y, (0.0, 0.0), Output(room, room, room, room), (0, 0))
     if switched.error != 0:
         return CHATTER
     return RESTART if switched.restart else CONTINUE
