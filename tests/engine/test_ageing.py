@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import gearidae as gd
-from gearidae.archive import growing
+from gearidae.archive import unfinished
 from gearidae.engine.backend import solve
 from gearidae.engine.events.sliding import rest_reserve
 from gearidae.engine.friction.ageing import begin_ageing, later_age
@@ -476,7 +476,7 @@ def test_an_engine_in_two_parts_is_that_in_one_to_the_last_bit():
 @pytest.mark.parametrize("backend", ["auto", "sksundae"])
 def test_an_interrupted_engine_is_resumed_to_the_last_bit(backend, tmp_path, monkeypatch):
     """From its file, at the newest checkpoint: ages are part of the state."""
-    monkeypatch.setattr(growing, "CHECKPOINT_SECONDS", 0.0)
+    monkeypatch.setattr(unfinished, "CHECKPOINT_SECONDS", 0.0)
     duration = 2.0**-15
     kept = [duration * share for share in (0.25, 0.5, 0.75)]
     scene = ENGINE.replace({"run.duration": duration, "run.checkpoints": kept})

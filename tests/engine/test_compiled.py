@@ -75,7 +75,7 @@ def test_what_is_compiled_is_said(first_runs):
         assert process.stderr.count("compiling") == process.stderr.count("functions compiled in") >= 1
         assert f"compiling {message} for this machine" in process.stderr
         names = [path.name for path in kept]
-        assert any(name.startswith("native.advance-") for name in names)
+        assert any(name.startswith("step.advance-") for name in names)
         assert any(name.startswith("nodes.node_force-") for name in names) == (model == "elastic")
         assert not any(name.startswith("follow._follow-") for name in names)
 

@@ -7,8 +7,9 @@ import gearidae as gd
 from gearidae.engine.backend import run_blocks
 from gearidae.engine.events.record import EVENT_NUMBERS, EVENTS_AT_ONCE, record
 from gearidae.engine.integrate import driver
-from gearidae.engine.integrate.driver import BLOCK_EVENTS, BLOCK_PASSAGES, Ending, Output
+from gearidae.engine.integrate.driver import BLOCK_EVENTS, BLOCK_IMPACTS, BLOCK_PASSAGES, Ending, Output
 from gearidae.engine.model.state import MATERIALS, SLOTS_HIGH
+from gearidae.engine.observers.impacts import IMPACTS_AT_ONCE
 from gearidae.engine.observers.passages import PASSAGES_AT_ONCE
 from gearidae.engine.setup.build import make_problem
 from gearidae.engine.step import has_room
@@ -39,13 +40,15 @@ def test_a_block_has_room_for_all_that_can_happen_at_once():
 def test_room_is_for_so_many_and_what_is_full_is_not_written_beyond():
     m, out = make_problem(FLIGHT).model, Output.empty(9)
     most_events, most_passages = BLOCK_EVENTS - EVENTS_AT_ONCE, BLOCK_PASSAGES - PASSAGES_AT_ONCE
-    for events, passages, room in (
-        (0, 0, True),
-        (most_events, most_passages, True),
-        (most_events + 1, 0, False),
-        (0, most_passages + 1, False),
+    most_impacts = BLOCK_IMPACTS - IMPACTS_AT_ONCE
+    for events, passages, impacts, room in (
+        (0, 0, 0, True),
+        (most_events, most_passages, most_impacts, True),
+        (most_events + 1, 0, 0, False),
+        (0, most_passages + 1, 0, False),
+        (0, 0, most_impacts + 1, False),
     ):
-        assert has_room(events, passages, out) == room
+        assert has_room(events, passages, impacts, out) == room
     table = np.full((4, EVENT_NUMBERS), -7.0)
     assert record(m, table[:3], 2, 0.0, 1.0, 0, 0.0, 0.0) == 3
     assert record(m, table[:3], 3, 0.0, 1.0, 0, 0.0, 0.0) == 3

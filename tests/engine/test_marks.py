@@ -25,7 +25,7 @@ PROBLEM = make_problem(SCENES["high_sam"].scene)
 def test_a_phase_that_has_crossed_a_mark_is_on_its_far_side(path, coast, start, way):
     """By one rounding error: else the guard would stay below zero and no further mark be seen."""
     m, y, events = PROBLEM.shortened(1.0).model, PROBLEM.start.copy(), np.empty((64, EVENT_NUMBERS))
-    m.scene.contact_ratio, m.scene.coast_phase = path, coast
+    m.scene.contact_ratio, m.scene.coast_phase, m.scene.phase_high = path, coast, 16.0
     set_marks(m, start)
     y[PHASE] = start
     assert m.state.mesh_mark_below <= start < m.state.mesh_mark_above

@@ -50,7 +50,7 @@ class Recorder:
 @pytest.fixture
 def calls(monkeypatch):
     names = []
-    for name in ("adhesion_loss", "extremes", "friction_losses", "balance", "exposures"):
+    for name in ("adhesion_loss", "extremes", "friction_losses", "balance", "exposures", "impacts"):
         monkeypatch.setattr(step, name, Recorder(name, names))
         if hasattr(finish, name):
             monkeypatch.setattr(finish, name, Recorder(name, names))
@@ -59,7 +59,9 @@ def calls(monkeypatch):
 
 def follow(balance, exposures):
     """Call every hook, for a pair that has turned round at a mesh mark."""
-    wanted = SimpleNamespace(balance=balance, friction=balance, extremes=1, exposures=exposures)
+    wanted = SimpleNamespace(
+        balance=balance, friction=balance, extremes=1, exposures=exposures, impacts=exposures
+    )
     m = SimpleNamespace(scene=SimpleNamespace(follow=wanted, kind=0))
     y, turned = np.zeros(max(V, W) + 1), SimpleNamespace(turns=True, coast=0, pair=0, k=0, gap=0.0)
     step.account.py_func(m, 1.0, y, y, (True, True), (y, y))
@@ -73,7 +75,7 @@ def test_all_are_called_in_order(calls):
     hooks = {
         hook: [call.partition(".")[0] for call in calls if call.endswith(hook)] for hook in ("step", "finish")
     }
-    assert hooks["step"] == ["adhesion_loss", "extremes", "balance", "exposures"]
+    assert hooks["step"] == ["adhesion_loss", "extremes", "balance", "exposures", "impacts"]
     assert (
         calls.index("friction_losses.accumulate_friction")
         < calls.index("extremes.step")
@@ -85,12 +87,17 @@ def test_all_are_called_in_order(calls):
 
 @pytest.mark.parametrize(
     ("balance", "exposures", "gone"),
-    [(0, 0, {"adhesion_loss", "friction_losses", "balance", "exposures"}), (1, 0, {"exposures"})],
+    [
+        (0, 0, {"adhesion_loss", "friction_losses", "balance", "exposures", "impacts"}),
+        (1, 0, {"exposures", "impacts"}),
+    ],
 )
 def test_what_is_not_wanted_is_not_called(calls, balance, exposures, gone):
     follow(balance, exposures)
     called = {call.partition(".")[0] for call in calls}
-    assert called == {"adhesion_loss", "extremes", "friction_losses", "balance", "exposures"} - gone
+    assert (
+        called == {"adhesion_loss", "extremes", "friction_losses", "balance", "exposures", "impacts"} - gone
+    )
 
 
 # -- a run without its energy balance --------------------------------------------------------------------------------

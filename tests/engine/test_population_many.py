@@ -44,8 +44,8 @@ def events_of(fraction, longest):
     with pytest.MonkeyPatch.context() as patch:
         prepare = Problem.prepare
 
-        def limited(self, rtol, samples):
-            m = prepare(self, rtol, samples)
+        def limited(self, rtol, samples, *, as_ida=False):
+            m = prepare(self, rtol, samples, as_ida=as_ida)
             m.scene.longest_step = longest
             return m
 

@@ -355,6 +355,7 @@ def test_what_a_rising_torque_draws_along_does_not_stick_again_and_again(method,
         "run.duration": knots[-1][0],
         "run.samples": "off",
         "run.method": method,
+        "run.rtol": 1e-6 if method == "auto" else 8e-6,  # IDA's own formulas keep to an eighth
     }
     run = solve(gd.preset("teodorescu2009").replace(changes | hubs))
     assert run.status == "finished"

@@ -71,11 +71,6 @@ def test_a_film_takes_the_work_of_its_force(film, end):
     assert lost == pytest.approx(taken, rel=1e-9)  # the formula is of sixth order in the step
 
 
-def test_a_film_takes_nothing_where_it_does_not_act(film):
-    far, farther = GapMotion(8.0, 1.0, 0.2), GapMotion(8.5, 1.1, 0.3)
-    assert FILM.loss(film, 0.5, far, farther, (0.25, 0.5)) == (0.25, 0.5)
-
-
 def test_damping_takes_the_work_of_its_force(film):
     """Of a rate that rises evenly from 1 to 2 in a unit of time: the integral of its square is 7/3."""
     lost, error = DAMPING.mesh_loss(film, 1.0, 1.5, Ends(1.0, 1.0, 2.0, 1.0), (1.0, 0.0))

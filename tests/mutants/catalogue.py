@@ -105,7 +105,7 @@ MUTANTS = (
     ),
     Mutant(
         "turning point within a step at a wrong place",
-        "contact/history.py",
+        "formulas/interpolation.py",
         "(0.5 * b + s * a / 3.0)",
         "(0.5 * b + s * a / 2.0)",
         ("properties/test_force_law.py::test_the_turning_point_of_a_cubic_is_exact",),

@@ -214,12 +214,15 @@ def _changes_by_torques(scene, ds):
 
 
 def _continues(scene, looser, ds):
-    """Ringing multiplies what a restart changes: a thousandth of the swing, or what the tolerance changes."""
+    """Ringing multiplies what a restart changes: a thousandth of the swing, or twice what the tolerance changes.
+
+    Of gears that ring on single asperities both differences are draws from one spread, hence twice.
+    """
     changes = {"run.duration": 0.5 * scene.run.duration, "run.samples": 3}
     half = gd.simulate(scene.replace(changes), rtol=1e-7)
     rest = gd.simulate(scene.replace(changes), rtol=1e-7, start=half)
     last = float(ds.gear_speed[-1])
-    allowed = max(1e-3 * float(np.ptp(ds.gear_speed.values)), abs(last - float(looser.gear_speed[-1])))
+    allowed = max(1e-3 * float(np.ptp(ds.gear_speed.values)), 2.0 * abs(last - float(looser.gear_speed[-1])))
     assert abs(float(rest.gear_speed[-1]) - last) <= allowed, "a continued run is the whole"
 
 

@@ -59,6 +59,7 @@ def test_settings_of_the_call_end_up_in_the_scene():
         "exposures": 0,
         "balance": True,
         "passages": True,
+        "impacts": False,
         "asperity_events": True,
     }
     assert (ds.attrs["rtol"], ds.attrs["t_end"]) == (1e-5, 1e-3)

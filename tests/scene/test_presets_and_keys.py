@@ -15,7 +15,7 @@ CONTRACT = {
     "gears": "density pinion_inertia gear_inertia pinion_base_radius module pinion_teeth gear_teeth pressure_angle "
     "pinion_spring gear_spring pinion_spring_damping gear_spring_damping pinion_spring_play gear_spring_play "
     "face_width hub_friction hub_friction_rise hub_ageing_time hub_memory_length pinion_hub_radius gear_hub_radius "
-    "pinion_hub_adhesion gear_hub_adhesion "
+    "pinion_hub_clearance pinion_hub_adhesion gear_hub_adhesion "
     "pinion_axial_load gear_axial_load pinion_dimple_radius gear_dimple_radius",
     "mesh": "backlash tip_relief_radius radius_force damping film_damping film_gap static_error static_error.order "
     "static_error.amplitude static_error.phase pinion_pitch_error gear_pitch_error pitch_error_rms pitch_error_seed "

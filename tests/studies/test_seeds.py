@@ -154,6 +154,13 @@ def test_one_run_is_called_one_specimen(tmp_path, capsys):
     assert gd.plot.overview(ds).get_suptitle().endswith("one specimen, seed 5")
     assert main(["report", out, "-o", str(tmp_path / "out.html")]) == 0
     assert "This is one specimen" in (tmp_path / "out.html").read_text(encoding="utf-8")
+
+
+def test_a_probability_over_seeds_alone_names_those_that_were_drawn():
+    teeth = gd.preset("teodorescu2009").replace(
+        {"mesh.pitch_error_rms": "3 nm", "run.duration": 10e-6, "run.samples": 11}
+    )
+    ds = gd.studies.ensemble(teeth, {"mesh.pitch_error_seed": "seeds"}, 2)
     for ask in (gd.studies.sticking_probability, gd.plot.sticking_probability):
         with pytest.raises(gd.SceneError, match=r"over = mesh\.pitch_error_seed: .*seeds alone"):
             ask(ds, "mesh.pitch_error_seed")

@@ -13,7 +13,7 @@ import gearidae as gd
 from gearidae.engine import solve
 from gearidae.populations.first_touch import first_touch
 from gearidae.studies import _starting_seeds, starting_ramp
-from gearidae.studies._starting_seeds import _quantiles
+from gearidae.studies._starting_seeds import quantiles
 from reference.population import Contact, Tip
 
 GEARS = gd.preset("teodorescu2009").replace({"contact.roughness": "discrete", "load.torque": 0.0})
@@ -106,9 +106,9 @@ def test_whole_pitches_choose_the_tooth_and_nothing_else():
 
 
 def test_quantiles_count_gears_that_did_not_start():
-    np.testing.assert_allclose(_quantiles(np.arange(11.0)), [1.0, 5.0, 9.0], rtol=1e-15)
-    quantiles = _quantiles(np.array([4.0, math.inf, 1.0, 2.0, math.inf]))
-    assert quantiles.tolist() == [pytest.approx(1.4), 4.0, math.inf]
+    np.testing.assert_allclose(quantiles(np.arange(11.0)), [1.0, 5.0, 9.0], rtol=1e-15)
+    found = quantiles(np.array([4.0, math.inf, 1.0, 2.0, math.inf]))
+    assert found.tolist() == [pytest.approx(1.4), 4.0, math.inf]
 
 
 def test_a_gear_that_cannot_be_followed_is_left_out_and_named(caplog):
@@ -118,7 +118,7 @@ def test_a_gear_that_cannot_be_followed_is_left_out_and_named(caplog):
     torques = runs.torques([GEARS] * 3)
     np.testing.assert_array_equal(torques, [2.0, math.nan, 4.0])
     assert "one gear is left out: the steps became too small" in caplog.text
-    assert _quantiles(torques)[1] == 3.0
+    assert quantiles(torques)[1] == 3.0
     design = _starting_seeds._Design(GEARS, [], 1.0, 0, torques, 0.0, np.array([1.0, math.nan, 0.0]))
     columns = _starting_seeds._columns([design])
     assert columns["failed"].tolist() == [[False, True, False]]
