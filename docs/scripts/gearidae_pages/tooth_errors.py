@@ -16,6 +16,7 @@ import xarray as xr
 
 import gearidae as gd
 from gearidae.arrays import Floats
+from gearidae.scene import require_gears
 
 __all__ = ["DEVICE", "ERRORS", "figures", "markdown"]
 
@@ -67,7 +68,7 @@ def figures(run: xr.Dataset) -> Floats:
     """Smallest and largest speed of the gear [rad/s], largest force [N], rms of the band of its spectrum [rad/s]."""
     settled = run.isel(time=slice(int(_SETTLED * run.sizes["time"]), None))
     speed, time = settled["gear_speed"].values, settled["time"].values
-    mesh = float(speed.mean()) * DEVICE.gears.gear_teeth / (2.0 * np.pi)
+    mesh = float(speed.mean()) * require_gears(DEVICE).gears.gear_teeth / (2.0 * np.pi)
     taper = np.hanning(speed.size)
     line = np.fft.rfft((speed - speed.mean()) * taper)
     frequency = np.fft.rfftfreq(speed.size, float(time[1] - time[0])) / mesh

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
+from matplotlib.ticker import MaxNLocator
 
 from gearidae.archive.select import motion_samples, run_scene
 from gearidae.arrays import Floats
@@ -105,5 +106,6 @@ def _bars(ax: Axes, values: Floats, colour: str) -> None:
     ax.bar(np.arange(values.size), np.nan_to_num(values), color=colour, width=0.8)
     ax.axhline(0.0, color="0.3", linewidth=0.6)
     ax.set_xlim(-0.7, values.size - 0.3)
+    ax.xaxis.set_major_locator(MaxNLocator(integer=True))
     ax.tick_params(labelsize="x-small")
     tidy(ax)
