@@ -36,6 +36,8 @@ class Collector:
 
     def add(self, table: NDArray[np.float64]) -> None:
         """Add a table as a driver writes it, shape (n, columns)."""
+        if not len(table):
+            return
         for place, (name, column) in enumerate(self._kind.columns.items()):
             part: NDArray[Any] = table[:, place].astype(column.dtype)
             self._parts[name].append(part)
@@ -66,6 +68,8 @@ class Collector:
 
     def rows(self) -> Rows:
         """Return the rows; those in files are read as they are used, and may be written to in memory."""
+        if not self._held and not self._files:
+            return self._kind.none()
         if self._files and self._in_memory < math.inf:
             self._write()
         columns = {name: self._column(name) for name in self._kind.columns}

@@ -122,7 +122,8 @@ class _Reader:
         assign(m.work, before[1])
         if before[2] is not None:
             m.rows[:] = before[2]
-        orbit_anew(m)
+        if m.scene.orbit != 0.0:
+            orbit_anew(m)
 
     def _time(self, sample: int) -> float:
         run = self._scene.run

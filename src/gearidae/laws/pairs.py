@@ -1,7 +1,7 @@
 """Laws of a mesh and of its pairs that know gaps and rates alone: they declare keys, constants and losses.
 
-Laws of contacts need tables of asperities, which who reads a file must not load. They stand in the engine, with all
-laws of a pair and their sums (`gearidae.engine.laws.pairs`).
+Laws of contacts need tables of asperities, which whoever reads a file must not load. They stand in the engine, with the
+list of all laws of a pair and their sums (`gearidae.engine.laws.pairs`).
 """
 
 from __future__ import annotations

@@ -342,10 +342,7 @@ WORK: Final = record_type(
     ("mesh_error", MESH_ERROR),  # of a mesh that has one
     ("pitch_error", PITCH_ERROR, (2 * SLOTS_HIGH,)),  # by history
     ("orbit", ORBIT),  # of a pinion that has one
-    (
-        "within",
-        REAL,
-        (2 * SLOTS_HIGH,),
-    ),  # number and a half of the pair within the cut-off; 0 for none, by history
+    # by history: number of the pair within the cut-off plus 0.5, so that 0 is none
+    ("within", REAL, (2 * SLOTS_HIGH,)),
     ("impact", FOLLOWED, (2 * SLOTS_HIGH,)),  # by history
 )

@@ -23,6 +23,7 @@ from gearidae.engine.elastic.static_condensation import following_slope
 from gearidae.engine.laws.pairs import force_of_pair
 from gearidae.engine.model.record_types import Record
 from gearidae.engine.model.state import SLOTS_HIGH, Floats, Model, V, W
+from gearidae.engine.pairs.orbit import acceleration_of_gap
 from gearidae.engine.pairs.tooth_pairs import (
     contact_length,
     flank_of_history,
@@ -239,9 +240,7 @@ def _load_of(m: Model, t: float, y: Floats, yp: Floats, k: int) -> Load:
     by_gap = f.by_gap
     if m.scene.nodes > 0:
         by_gap += _following(m, k, y, pair.place)
-    bend = -sign * yp[V]  # of the gap
-    if pair.slope != 0.0:
-        bend += m.scene.relief_slope * m.scene.phase_rate * y[W] * y[W] + sign * pair.slope * yp[W]
+    bend = acceleration_of_gap(m, coast, pair.slope, y[W], yp[V], yp[W])
     rate = by_gap * pair.rate + f.by_rate * bend + f.by_place * pair.place_rate
     power, power_rate = -f.load * pair.rate, -(rate * pair.rate + f.load * bend)
     if f.path != 0.0:

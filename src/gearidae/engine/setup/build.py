@@ -182,7 +182,8 @@ def _gear_problem(scene: GearScene, nodes: Nodes | None, begin: Start) -> Proble
     w = start.gear_speed * geometry.base_radius_gear / speed
     model.state.turns, model.state.first_place = whole, start.mesh_phase
     model.state.ageing.age[:] = start.rest_time / float(s.time_unit)
-    follow_orbit(model, 0.0)
+    if s.orbit != 0.0:  # asked here as well: a call from Python takes 50 us
+        follow_orbit(model, 0.0)
     error = error_at(model, u, phase)
     model.state.initial_lead = u + error.value
     skipped = {

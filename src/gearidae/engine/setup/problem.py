@@ -206,7 +206,8 @@ class Problem:
             extremes = extremes_in_si(m, self.addresses.place, time, state)
         for record, copy in zip((m.state, m.work), before, strict=True):
             assign(record, copy)
-        orbit_anew(m)
+        if m.scene.orbit != 0.0:
+            orbit_anew(m)
         exposures[:] = exposed
         return balance, extremes
 
