@@ -1,0 +1,102 @@
+"""Solution of a run of a train: samples over its shafts and meshes, events with their place, totals of each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearidae.records.results import Words
+from gearidae.records.statistics import Statistics
+
+SHAFT_SAMPLES: Final = ("shaft_speed", "shaft_angle", "hub_load", "hub_load_angle")
+"""Samples of each shaft, shape (shafts, n): [rad/s], [rad], [N], and the load's angle in the frame [rad]."""
+MESH_SAMPLES: Final = ("mesh_force", "transmission_error", "drive_gap", "coast_gap", "pairs_in_contact")
+"""Samples of each mesh, shape (meshes, n): the force with the damping of the mesh [N], lengths [m], and a count."""
+COMMON_SAMPLES: Final = ("drive_torque", "load_torque", "pin_load")
+"""Samples of the train, shape (n,): [N m], [N m] and [N]."""
+SHAFT_TOTALS: Final = (
+    "min_speed",
+    "max_speed",
+    "hub_loss",
+    "hub_sliding",
+    "resistance_loss",
+    "drag_loss",
+    "rest_time",
+)
+"""Totals of each shaft: [rad/s], [J], the load integrated over the way of the hub [N m], [J], [J] and [s]."""
+MESH_TOTALS: Final = (
+    "largest_mesh_force",
+    "largest_mesh_force_time",
+    "smallest_mesh_force",
+    "smallest_mesh_force_time",
+    "smallest_separation",
+    "mesh_exits",
+    "adhesion_loss",
+    "damping_loss",
+    "film_loss",
+    "work_in",
+    "work_out",
+)
+"""Totals of each mesh in SI units: what its driver puts into it, and what its driven gear gets of that, among them."""
+ENERGIES: Final = (
+    "drive_work",
+    "radius_work",
+    "load_work",
+    "kinetic_change",
+    "stored_change",
+    "pin_loss",
+    "throughput",
+    "residual",
+    "residual_bound",
+)
+"""Energies of the whole train [J]; ``load_work`` is what the dry resistance and the drags of the load have taken."""
+
+
+@dataclass(frozen=True, slots=True)
+class TrainSolution:
+    """Result of one run of a train.
+
+    Attributes
+    ----------
+    shafts, meshes : tuple of str
+        Names, in the order of the arrays.
+    time : ndarray, shape (n,)
+        Sample times [s].
+    samples : dict of str to ndarray
+        Those of `SHAFT_SAMPLES`, shape (shafts, n), `MESH_SAMPLES`, shape (meshes, n), and `COMMON_SAMPLES`, shape (n,).
+    events : dict of str to ndarray, shape (m,)
+        In the order of time: ``time`` [s], ``kind`` (an `EventKind`), ``mesh`` and ``shaft`` (numbers, -1 for none),
+        ``flank`` (a `Flank`), ``pair``, ``gap_rate`` [m/s] and ``force`` [N], as for `Events`.
+    shaft_totals, mesh_totals : dict of str to ndarray, shape (shafts,) and (meshes,)
+        Those of `SHAFT_TOTALS` and `MESH_TOTALS`.
+    energy : dict of str to float
+        Those of `ENERGIES`.
+    rests : dict of str to ndarray, shape (k,)
+        Every interval in which a shaft was at rest: ``shaft``, ``begin`` and ``end`` [s], in the order of their ends.
+    status, message : str
+        As for `Solution`.
+    reached, start : float
+        Time reached, and that at which the run began [s].
+    statistics : Statistics
+    checkpoint : ndarray of 8-byte words, optional
+        State at the end, from which another run can go on; None where there is none.
+    """
+
+    shafts: tuple[str, ...]
+    meshes: tuple[str, ...]
+    time: NDArray[np.float64]
+    samples: dict[str, NDArray[np.float64]]
+    events: dict[str, NDArray[np.float64]]
+    shaft_totals: dict[str, NDArray[np.float64]]
+    mesh_totals: dict[str, NDArray[np.float64]]
+    energy: dict[str, float]
+    rests: dict[str, NDArray[np.float64]]
+    status: str
+    message: str
+    reached: float
+    start: float
+    statistics: Statistics
+    checkpoint: Words | None = None
