@@ -15,7 +15,7 @@ from gearidae.compiled import is_ready
 from gearidae.engine import compiling
 
 gd.compile()
-names = ["SOLVER", "ELASTIC", "EXPOSURES", "POPULATION", "FRICTION", "IMPACTS"]
+names = ["SOLVER", "ELASTIC", "EXPOSURES", "POPULATION", "FRICTION", "IMPACTS", "TRAIN"]
 parts = [getattr(compiling, name) for name in names]
 print(all(is_ready(part) for part in parts))
 """

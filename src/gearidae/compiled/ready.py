@@ -11,6 +11,7 @@ EXPOSURES: Final = "exposures"
 POPULATION: Final = "populations of asperities"
 FRICTION: Final = "friction"
 IMPACTS: Final = "impacts"
+TRAIN: Final = "trains"
 """Parts of the program, each compiled with the first scene that needs it."""
 
 

@@ -20,6 +20,7 @@ from gearidae.compiled.ready import FRICTION as FRICTION
 from gearidae.compiled.ready import IMPACTS as IMPACTS
 from gearidae.compiled.ready import POPULATION as POPULATION
 from gearidae.compiled.ready import SOLVER as SOLVER
+from gearidae.compiled.ready import TRAIN as TRAIN
 
 log = logging.getLogger(__name__)
 
@@ -30,6 +31,7 @@ HOW_LONG: Final = {
     POPULATION: "some ten seconds",
     FRICTION: "some ten seconds",
     IMPACTS: "some seconds",
+    TRAIN: "some twenty seconds",
 }
 """How long that takes."""
 FUNCTIONS: Final = {

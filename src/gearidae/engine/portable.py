@@ -163,7 +163,7 @@ class _Solver:
         self._counted = (0, 0)  # of its evaluations, what the run's counters already have
         self.ending: Ending | None = None
         self._look = math.inf  # time of a dip to stop at
-        self.trail = _Trail(self._driver.time, y, y)
+        self.trail = Trail(self._driver.time, y, y)
 
     def start(self, y: Floats) -> None:
         """Set consistent rates and the first step, and start a fresh IDA at the time reached."""
@@ -172,7 +172,7 @@ class _Solver:
         stop = next_stop(m)
         self._stop, self._look = stop, math.inf
         self._last, self._counted = None, (0, 0)
-        self.trail = _Trail(t, y, yp)
+        self.trail = Trail(t, y, yp)
         if self._driver.resting != 0:
             return
         self._make(y.size, first_step(m, t, y, yp, stop - t))
@@ -291,7 +291,7 @@ class _Solver:
         self._guard_calls = 0
 
 
-class _Trail:
+class Trail:
     """Where the last few returns were, for Hermite interpolation of degree five between the last two.
 
     The third point must not crowd the others: what the solver returns is smooth only to the tolerance, and divided
@@ -303,12 +303,15 @@ class _Trail:
 
     @property
     def last(self) -> tuple[float, Floats, Floats]:
+        """Time, state and rates of the last return."""
         return self._points[-1]
 
     def add(self, t: float, y: Floats, yp: Floats) -> None:
+        """Note a return."""
         self._points = [*self._points[1 - _POINTS :], (t, y.copy(), yp.copy())]
 
     def at(self, t: float) -> Floats:
+        """Interpolate the state at a time between the last two returns."""
         *earlier, before, after = self._points
         apart = _CROWDED * (after[0] - before[0])
         third = [point for point in earlier if before[0] - point[0] >= apart][-1:]

@@ -93,7 +93,8 @@ class Statistics:
     fold_gap : float, optional
         Gap at which the elastic contact folds, for the ending ``FOLD`` [m].
     method : str
-        Formulas at the start of the run: ``adams`` (and IDA's own where these are better), or ``bdf``, IDA's own.
+        Formulas at the start of the run: ``adams`` (and IDA's own where these are better), ``bdf``, IDA's own, or
+        ``dop853``, of a train.
     """
 
     steps: int = 0

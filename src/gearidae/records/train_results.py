@@ -66,7 +66,8 @@ class TrainSolution:
     time : ndarray, shape (n,)
         Sample times [s].
     samples : dict of str to ndarray
-        Those of `SHAFT_SAMPLES`, shape (shafts, n), `MESH_SAMPLES`, shape (meshes, n), and `COMMON_SAMPLES`, shape (n,).
+        Those of `SHAFT_SAMPLES`, shape (shafts, n), of `MESH_SAMPLES`, shape (meshes, n), and of `COMMON_SAMPLES`, shape
+        (n,).
     events : dict of str to ndarray, shape (m,)
         In the order of time: ``time`` [s], ``kind`` (an `EventKind`), ``mesh`` and ``shaft`` (numbers, -1 for none),
         ``flank`` (a `Flank`), ``pair``, ``gap_rate`` [m/s] and ``force`` [N], as for `Events`.

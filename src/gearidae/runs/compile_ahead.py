@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Any, Final
 
+from gearidae.engine.train import solve_train
 from gearidae.runs.simulation import simulate
-from gearidae.scene import Scene, preset
+from gearidae.scene import Scene, TrainScene, preset
 
 _GEARS: Final = "teodorescu2009_low_speed"
 SCENES: Final[tuple[tuple[str, dict[str, Any]], ...]] = (
@@ -27,6 +28,28 @@ def scenes() -> list[Scene]:
     return [preset(name).replace({**changes, **moment}) for name, changes in SCENES]
 
 
+def train() -> TrainScene:
+    """Return a train of two meshes with a moment to run."""
+    pair = preset(_GEARS).replace({"run.duration": 1e-8, "run.samples": 3})
+    data, gears, geometry = pair.to_dict(), pair.gears, pair.geometry
+    del data["gears"]
+    sizes = {"pressure_angle": gears.pressure_angle, "face_width": gears.face_width}
+    teeth = gears.pinion_teeth, gears.gear_teeth, gears.pinion_teeth
+    data["shafts"] = {f"shaft_{i}": {"teeth": z, "inertia": gears.gear_inertia} for i, z in enumerate(teeth)}
+    data["meshes"] = {
+        f"mesh_{i}": {
+            "driver": f"shaft_{i}",
+            "driven": f"shaft_{i + 1}",
+            "driver_base_radius": radius,
+            **sizes,
+        }
+        for i, radius in enumerate((geometry.base_radius_pinion, geometry.base_radius_gear))
+    }
+    scene = Scene.from_dict(data)
+    assert isinstance(scene, TrainScene)
+    return scene
+
+
 def compile() -> None:  # noqa: A001
     """Compile the whole engine for this machine, or nothing of what has been kept from before.
 
@@ -40,6 +63,7 @@ def compile() -> None:  # noqa: A001
     >>> import gearidae as gd
     >>> gd.compile()  # doctest: +SKIP
     """
-    for scene in scenes():
-        for backend in ("auto", "sksundae"):
+    for backend in ("auto", "sksundae"):
+        for scene in scenes():
             simulate(scene, backend=backend)
+        solve_train(train(), backend=backend)

@@ -1,0 +1,328 @@
+"""From a scene with several meshes to a train: a pair of gears for each mesh, and what joins them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Final
+
+import numpy as np
+
+from gearidae.engine.compiling import TRAIN, make_part_ready
+from gearidae.engine.model.addresses import Addresses
+from gearidae.engine.model.state import DRIVE, Floats, Model, Record
+from gearidae.engine.pairs.mesh_error import mesh_error
+from gearidae.engine.setup.build import make_problem
+from gearidae.engine.setup.problem import Problem
+from gearidae.engine.train.layout import TrainModel, blank_train
+from gearidae.engine.train.observe import kinetic_energy_of, write_stored
+from gearidae.engine.train.start import begin_train
+from gearidae.errors import SceneError
+from gearidae.scene import Drive, GearScene, Load
+from gearidae.scene.joints import pushes
+from gearidae.scene.pitch_errors import error_on_path
+from gearidae.scene.scene import TrainScene
+from gearidae.scene.train import Train
+
+TURNS_LOW: Final = 16.0
+"""Pitches of the load's gear that are taken out of its angle at once, at least."""
+
+
+@dataclass(slots=True)
+class TrainProblem:
+    """A train that is ready to run; a driver changes its models in place.
+
+    Attributes
+    ----------
+    scene : TrainScene
+    model : TrainModel
+    problems : tuple of Problem
+        Of the meshes, as pairs.
+    addresses : tuple of Addresses
+        Of their models, which they keep alive.
+    energies : ndarray, shape (3 meshes,)
+        At the start, see `gearidae.engine.train.observe.write_stored`.
+    kinetic : float
+        Kinetic energy at the start [J].
+    """
+
+    scene: TrainScene
+    model: TrainModel
+    problems: tuple[Problem, ...]
+    addresses: tuple[Addresses, ...]
+    energies: Floats = field(init=False)
+    kinetic: float = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Note the energies at the start."""
+        self.energies = np.zeros(3 * len(self.problems))
+        write_stored(self.model, self.model.y, self.energies)
+        self.kinetic = float(kinetic_energy_of(self.model, self.model.y))
+
+
+def make_train(scene: TrainScene) -> TrainProblem:
+    """Lay a train out and set it to its start.
+
+    Raises
+    ------
+    SceneError
+        If it has what several meshes cannot have.
+    """
+    make_part_ready(TRAIN)
+    train = scene.train
+    _refuse(scene, train)
+    pairs = _pairs(scene, train)
+    problems = tuple(make_problem(pair) for pair in pairs)
+    addresses = tuple(_alone(problem.model) for problem in problems)
+    tm = blank_train(len(train.shafts), len(train.meshes))
+    _add_meshes(tm, scene, train, problems, addresses)
+    _add_shafts(tm, scene, train)
+    _add_train(tm, scene, train, problems)
+    _set_start(tm, scene, train, pairs, problems)
+    begin_train(tm)
+    return TrainProblem(scene, tm, problems, addresses)
+
+
+def _refuse(scene: TrainScene, train: Train) -> None:
+    """Refuse what a train cannot be run with yet."""
+    if all(mesh.b != train.load for mesh in train.meshes):
+        raise SceneError("load.shaft", train.shafts[train.load].name, "must be a shaft that a mesh drives")
+    drive, run = scene.drive, scene.run
+    refused = (
+        (bool(drive.pin_friction_rise), "drive.pin_friction_rise", "friction of its joints does not age"),
+        (run.stop == "sticks", "run.stop", "each of its shafts may stick"),
+        (run.impacts, "run.impacts", "impacts are a table of one mesh"),
+        (bool(run.checkpoints), "run.checkpoints", "a train keeps no checkpoints yet"),
+    )
+    for there, key, reason in refused:
+        if there:
+            table, name = key.split(".")
+            value = getattr(getattr(scene, table), name)
+            raise SceneError(key, value, f"cannot be combined with several meshes: {reason}")
+
+
+# -- pairs -----------------------------------------------------------------------------------------------------------
+
+
+def _ends(train: Train) -> tuple[int, int]:
+    """Numbers of the meshes whose pairs have the torques of the drive and of the load."""
+    drive = next(k for k, mesh in enumerate(train.meshes) if mesh.a == train.drive)
+    load = next(k for k, mesh in enumerate(train.meshes) if mesh.b == train.load)
+    return drive, load
+
+
+def _pairs(scene: TrainScene, train: Train) -> list[GearScene]:
+    """Every mesh as a pair of gears: the first at the drive with its torques, the first at the load with those.
+
+    What a pair takes for small depends on its torques; of the others that is the torque of the drive as a rigid train
+    would hand it on.
+    """
+    first, last = _ends(train)
+    drive = scene.drive.model_copy(
+        update={"shaft": None, "orientation": 0.0, "pin_radius": 0.0, "pin_friction": None}
+    )
+    load = scene.load.model_copy(update={"shaft": None})
+    shares = [train.shafts[mesh.a].ratio / train.shafts[train.drive].ratio for mesh in train.meshes]
+    ends = [
+        _pair(scene, train, k, drive if k == first else Drive(), load if k == last else Load())
+        for k in sorted({first, last})
+    ]
+    # the largest torque of the drive's shaft that either end stands for
+    torques = [
+        float(make_problem(pair).model.scene.force_unit)
+        * train.meshes[k].geometry.base_radius_pinion
+        * float(shares[k])
+        for k, pair in zip(sorted({first, last}), ends, strict=True)
+    ]
+    inside = [
+        _pair(scene, train, k, Drive(torque=max(torques) / float(shares[k])), Load())
+        for k in range(len(train.meshes))
+    ]
+    for k, pair in zip(sorted({first, last}), ends, strict=True):
+        inside[k] = pair
+    return inside
+
+
+def _pair(scene: TrainScene, train: Train, k: int, drive: Drive, load: Load) -> GearScene:
+    """One mesh of a train with torques; its run keeps nothing, and its bodies are rigid."""
+    pair = scene.pair(train.meshes[k].name)
+    run = pair.run.model_copy(update={"checkpoints": (), "impacts": False, "passages": False, "stop": "time"})
+    bodies = pair.contact.model_copy(update={"bodies": "rigid"})
+    tables = {name: getattr(pair, name) for name in ("gears", "mesh", "surface", "coating", "initial")}
+    return GearScene(name=pair.name, drive=drive, load=load, contact=bodies, run=run, **tables)
+
+
+def _alone(m: Model) -> Addresses:
+    """Have the model of a pair be one of a mesh: friction is that of the train's shafts, and forces are noted."""
+    m.scene.friction.on = m.scene.friction.rubs = 0
+    m.scene.noting = 1
+    return Addresses(m)
+
+
+# -- constants -------------------------------------------------------------------------------------------------------
+
+
+def _add_meshes(
+    tm: TrainModel,
+    scene: TrainScene,
+    train: Train,
+    problems: tuple[Problem, ...],
+    places: tuple[Addresses, ...],
+) -> None:
+    """Set the constants of the meshes."""
+    load = _teeth_at(train, train.load)
+    for mesh, record, problem, address in zip(train.meshes, tm.meshes, problems, places, strict=True):
+        s, geometry = problem.model.scene, mesh.geometry
+        record["place"], record["a"], record["b"] = address.place, mesh.a, mesh.b
+        for unit in ("time_unit", "length_unit", "force_unit"):
+            record[unit] = s[unit]
+        record["driver_radius"], record["driven_radius"] = (
+            geometry.base_radius_pinion,
+            geometry.base_radius_gear,
+        )
+        record["offset"], record["phase"] = mesh.offset, mesh.phase % 1.0
+        record["ratio"] = float(_turns(train, mesh.b) * geometry.gear_teeth / load)
+        record["per_radian"] = geometry.gear_teeth / (2.0 * math.pi)
+        sense, alpha = train.shafts[mesh.a].sense, geometry.pressure_angle
+        for side, way in (("drive", 1.0), ("coast", -1.0)):
+            x, y = math.sin(alpha), way * sense * math.cos(alpha)
+            record[f"{side}_x"] = math.cos(mesh.angle) * x - math.sin(mesh.angle) * y
+            record[f"{side}_y"] = math.sin(mesh.angle) * x + math.cos(mesh.angle) * y
+        record["radius_power"] = int(scene.run.balance and s.curvature_force == 0)
+
+
+def _turns(train: Train, shaft: int) -> Fraction:
+    """Speed of a shaft over that of the load's, a fraction of integers."""
+    return train.shafts[shaft].ratio / train.shafts[train.load].ratio
+
+
+def _teeth_at(train: Train, shaft: int) -> int:
+    """Teeth of the first gear by which a shaft is driven."""
+    return next(mesh.geometry.gear_teeth for mesh in train.meshes if mesh.b == shaft)
+
+
+def _add_shafts(tm: TrainModel, scene: TrainScene, train: Train) -> None:
+    """Set the constants of the shafts."""
+    for number, (laid, record) in enumerate(zip(train.shafts, tm.shafts, strict=True)):
+        shaft = scene.shafts[laid.name]
+        record["inertia"], record["ratio"] = laid.inertia, float(_turns(train, number))
+        for key in ("resistance", "viscous", "drag", "hub_radius"):
+            record[key] = getattr(shaft, key)
+        hub = shaft.hub
+        if hub is not None:
+            record["hub_arm"], record["hub_torque"] = hub.arm, hub.torque(0.0)
+        record["rubs"] = int(
+            record["resistance"] > 0.0 or record["hub_arm"] > 0.0 or record["hub_torque"] > 0.0
+        )
+
+
+def _add_train(tm: TrainModel, scene: TrainScene, train: Train, problems: tuple[Problem, ...]) -> None:
+    """Set what is of the train as a whole."""
+    record, drive, run = tm.train[0], scene.drive, scene.run
+    record.drive, record.load = train.drive, train.load
+    record.drive_mesh, record.load_mesh = _ends(train)
+    if problems[record.load_mesh].model.scene.dry != 0:
+        tm.shafts[train.load]["rubs"] = 1
+    if pushes(drive):
+        record.pushes, record.cosine, record.sine = (
+            1,
+            math.cos(drive.orientation),
+            math.sin(drive.orientation),
+        )
+        coefficient = drive.pin_friction
+        if coefficient is None:
+            coefficient = scene.shafts[train.shafts[train.drive].name].hub_friction
+        record.pin_arm = coefficient * drive.pin_radius
+        if record.pin_arm > 0.0:
+            tm.shafts[train.drive]["rubs"] = 1
+    teeth = _teeth_at(train, train.load)
+    record.per_radian = teeth / (2.0 * math.pi)
+    whole = math.lcm(
+        *(_fraction(train, mesh.b, mesh.geometry.gear_teeth, teeth).denominator for mesh in train.meshes)
+    )
+    # histories go round: each keeps its place where all slots have gone by
+    slots = max(int(problem.model.scene.slots) for problem in problems)
+    record.period = whole * slots * math.ceil(TURNS_LOW / (whole * slots))
+    record.balance, record.end, record.samples = int(run.balance), run.duration, run.sample_count
+    word, _, turns = run.stop.partition(" ")
+    record.stop_pitches = float(turns) * teeth if word == "turns" else math.inf
+    _add_tolerances(tm, scene, problems)
+
+
+def _fraction(train: Train, shaft: int, teeth: int, load: int) -> Fraction:
+    return _turns(train, shaft) * teeth / load
+
+
+def _add_tolerances(tm: TrainModel, scene: TrainScene, problems: tuple[Problem, ...]) -> None:
+    """Set the tolerances of the states by those of the meshes, and how long steps may be."""
+    n, rtol = len(tm.shafts), scene.run.rtol
+    radii: list[list[tuple[float, float]]] = [[] for _ in range(n)]
+    for mesh, problem in zip(tm.meshes, problems, strict=True):
+        s = problem.prepare(rtol, scene.run.sample_count).scene
+        for side, radius in (("a", "driver_radius"), ("b", "driven_radius")):
+            angle = float(mesh["length_unit"] / mesh[radius])
+            radii[int(mesh[side])].append((angle, angle / float(mesh["time_unit"])))
+        tau = _own_time(tm, mesh)
+        tm.train[0].tau = min(float(tm.train[0].tau) or math.inf, tau)
+        longest = float(s.longest_step) or math.inf
+        free = float(s.free_step) or math.inf
+        step = min(longest, free) * float(mesh["time_unit"])
+        tm.train[0].longest_step = min(float(tm.train[0].longest_step) or math.inf, step)
+        rest = float(s.rest_look) * float(mesh["time_unit"])
+        tm.train[0].rest_step = min(float(tm.train[0].rest_step) or math.inf, rest)
+    for i, own in enumerate(radii):
+        tm.weights[i] = 1.0 / (rtol * min(angle for angle, _ in own))
+        tm.weights[n + i] = tm.train[0].tau / (rtol * min(angle for angle, _ in own))
+    # a phase matters by the gap it opens where tip relief is steepest
+    steepest = [
+        float(mesh["ratio"]) * float(p.model.scene.relief_curvature * p.model.scene.reach)
+        for mesh, p in zip(tm.meshes, problems, strict=True)
+    ]
+    tm.weights[tm.train[0].load] = max(max(steepest), 1.0) / rtol
+
+
+def _own_time(tm: TrainModel, mesh: Record) -> float:
+    """Time of a mesh by its own masses and force, the fastest of its contacts [s]."""
+    first, second = tm.shafts[int(mesh["a"])]["inertia"], tm.shafts[int(mesh["b"])]["inertia"]
+    inverse = mesh["driver_radius"] ** 2 / first + mesh["driven_radius"] ** 2 / second
+    return math.sqrt(float(mesh["length_unit"]) / (inverse * float(mesh["force_unit"])))
+
+
+# -- the start -------------------------------------------------------------------------------------------------------
+
+
+def _set_start(
+    tm: TrainModel, scene: TrainScene, train: Train, pairs: list[GearScene], problems: tuple[Problem, ...]
+) -> None:
+    """Set departures and speeds of the shafts: gaps of the tree's meshes as given, none of them closing or opening."""
+    n, initial, y = len(train.shafts), scene.initial, tm.y
+    y[n + train.load] = initial.gear_speed
+    known = {train.load}
+    tree = [k for k, mesh in enumerate(train.meshes) if not mesh.closes]
+    while tree:
+        k = next(k for k in tree if (train.meshes[k].a in known) != (train.meshes[k].b in known))
+        tree.remove(k)
+        mesh, m = train.meshes[k], problems[k].model
+        sigma, geometry = float(m.scene.length_unit), mesh.geometry
+        # at the phase of the start; the gap of a pair beyond its path is that of its relief besides
+        phase = mesh.phase % 1.0
+        outside = phase - min(phase, float(m.scene.contact_ratio))
+        relief = 0.5 * float(m.scene.relief_curvature) * outside**2
+        gap = float(initial.gap) + mesh.offset - error_on_path(pairs[k], coast=False)
+        u = float(m.scene.clearance[DRIVE]) + relief - gap / sigma
+        e = mesh_error(m, u, phase)
+        way = (u + e.value) * sigma + mesh.offset
+        r, s = geometry.base_radius_pinion, geometry.base_radius_gear
+        a, b = mesh.a, mesh.b
+        arm, other = (1.0 - e.pinion) * r, (1.0 + e.gear) * s
+        if b in known:
+            y[a], y[n + a] = (way + s * y[b]) / r, other * y[n + b] / arm
+        else:
+            y[b], y[n + b] = (r * y[a] - way) / s, arm * y[n + a] / other
+        known |= {a, b}
+    for i, shaft in enumerate(tm.shafts):
+        shaft["begin"] = y[i]
+    for mesh, problem in zip(train.meshes, problems, strict=True):
+        state = problem.model.state
+        state.turns, state.first_place = math.floor(mesh.phase), mesh.phase

@@ -1,0 +1,223 @@
+"""The records of a train: its shafts and meshes, and where the numbers of its state stand.
+
+Each mesh is a pair of gears with a `Model` of its own, in its own units, whose shafts are given: all that happens
+between two gears is asked of it, as in a run of a pair. What joins them is in SI units. States of a train of N shafts:
+
+    0 .. N-1     departures of the shafts' angles from those of the rigid train [rad], at the place of the load's shaft
+                 its own angle in pitches of its gear,
+    N .. 2N-1    speeds of the shafts [rad/s],
+
+and behind them the works and losses, integrated with the motion. The angle of shaft i is ``rho_i phi_L + delta_i``, rho
+a fraction of integers: it drops out of all transmission errors, ``u = R_a delta_a - R_b delta_b - e - o``, which are
+never differences of large angles, those of the meshes that close a loop neither.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearidae.arrays import Floats
+from gearidae.compiled import name_type
+from gearidae.engine.events.record import EVENT_NUMBERS, EVENTS_AT_ONCE
+from gearidae.engine.model.record_types import INT, REAL, record_type
+
+SHAFT: Final = record_type(
+    ("inertia", REAL),  # [kg m^2]
+    ("ratio", REAL),  # speed over that of the load's shaft [1]
+    ("resistance", REAL),  # dry resistance of its own [N m]
+    ("viscous", REAL),  # [N m s]
+    ("drag", REAL),  # [N m s^2]
+    ("rubs", INT),  # 1 if anything dry may hold it
+    ("hub_arm", REAL),  # coefficient times radius of its hub [m]
+    ("hub_torque", REAL),  # of adhesion and axial load [N m]
+    ("hub_radius", REAL),  # [m]
+    ("begin", REAL),  # departure at the start [rad]
+    # state
+    ("slip", REAL),  # direction of slip: 1, -1, or 0 of a shaft that is held
+    ("rest_begin", REAL),  # since when it is held [s]
+    ("rest_time", REAL),  # of all rests that have ended [s]
+    ("min_speed", REAL),  # [rad/s]
+    ("max_speed", REAL),  # [rad/s]
+    # of the last evaluation
+    ("torque", REAL),  # without friction [N m]
+    ("limit", REAL),  # of friction [N m]
+    ("load_x", REAL),  # force on its hub [N]
+    ("load_y", REAL),
+    ("hub", REAL),  # modulus of that [N]
+)
+
+MESH: Final = record_type(
+    ("place", INT),  # where its model lies, see `gearidae.engine.model.addresses`
+    ("a", INT),  # shafts of the driver and of the driven gear
+    ("b", INT),
+    ("time_unit", REAL),  # of its model [s]
+    ("length_unit", REAL),  # [m]
+    ("force_unit", REAL),  # [N]
+    ("driver_radius", REAL),  # base radii [m]
+    ("driven_radius", REAL),
+    ("offset", REAL),  # [m]
+    ("phase", REAL),  # at the start, less whole pitches [pb]
+    ("ratio", REAL),  # pitches in a pitch of the load's gear
+    ("per_radian", REAL),  # pitches in a radian of the driven gear
+    ("drive_x", REAL),  # direction in which the drive flank pushes the driven gear
+    ("drive_y", REAL),
+    ("coast_x", REAL),  # and the coast flank
+    ("coast_y", REAL),
+    ("radius_power", INT),  # 1 if the power of the changing radius is followed
+    # state
+    ("largest", REAL),  # mesh forces [N] and their times [s]
+    ("largest_time", REAL),
+    ("smallest", REAL),
+    ("smallest_time", REAL),
+    ("separation", REAL),  # smallest [m]
+    # of the last evaluation
+    ("force", REAL),  # with damping [N]
+    ("step_high", REAL),  # largest and smallest in the stages of the present step [N]
+    ("step_low", REAL),
+    ("error", REAL),  # transmission error [m]
+)
+
+TRAIN: Final = record_type(
+    ("drive", INT),  # shafts of the drive and of the load
+    ("load", INT),
+    ("drive_mesh", INT),  # meshes whose models have the torques of the drive and of the load
+    ("load_mesh", INT),
+    ("pushes", INT),  # 1 if the drive pushes with a pin
+    ("cosine", REAL),  # of the direction of its axes in the frame
+    ("sine", REAL),
+    ("pin_arm", REAL),  # coefficient times radius of the pin [m]
+    ("per_radian", REAL),  # pitches of the load's gear in a radian
+    (
+        "period",
+        REAL,
+    ),  # pitches of the load's gear after which all phases are whole, and their histories in place
+    ("balance", INT),  # 1 if works and losses are followed
+    ("start", REAL),  # [s]
+    ("end", REAL),  # [s]
+    ("samples", INT),
+    ("stop_pitches", REAL),  # way of the load's gear at which the run ends; infinite for none
+    ("longest_step", REAL),  # [s]
+    ("rest_step", REAL),  # longest while a shaft is held [s]
+    ("tau", REAL),  # fastest time of the meshes [s]
+    # state
+    ("turns", REAL),  # whole pitches taken out of the load's angle
+    ("time", REAL),  # accepted [s]
+    ("step", REAL),  # next to be tried [s]
+    ("guard", REAL),  # least guard at the accepted time
+    ("throughput", REAL),  # magnitudes of works and changes of kinetic energy [J]
+    ("peak_kinetic", REAL),  # largest kinetic energy [J]
+    ("kinetic", REAL),  # at the accepted time [J]
+    ("roots", INT),  # in close succession
+    ("last_root", REAL),  # [s]
+    ("next_sample", INT),
+    ("rows", INT),  # in the present block
+    ("events", INT),
+    ("rests", INT),
+    ("fresh", INT),  # 1 if the rates at the accepted time have to be evaluated
+    ("done", INT),
+    ("error", INT),
+    ("steps", INT),  # counters
+    ("evaluations", INT),
+    ("refused", INT),
+    ("guards", INT),
+    ("restarts", INT),
+    ("flight_steps", INT),
+    # of the last evaluation
+    ("drive_torque", REAL),  # [N m]
+    ("dry", REAL),  # limit of the load's dry resistance [N m]
+    ("drags", REAL),  # what acts on the load's shaft besides [N m]
+    ("pin", REAL),  # force of the pin [N]
+)
+
+OF_SHAFT: Final = 4
+"""Works of a shaft: loss of the hub, its load over its sliding distance, dry resistance, drags."""
+OF_MESH: Final = 5
+"""Works of a mesh: losses by damping and films, work of the changing radius, work put in and work got out."""
+OF_TRAIN: Final = 4
+"""Works of the train: of the drive, what dry resistance and drags of the load take, loss of the pin."""
+
+
+def works_of(shafts: int, meshes: int) -> int:
+    """Count the works that are integrated with the motion."""
+    return OF_SHAFT * shafts + OF_MESH * meshes + OF_TRAIN
+
+
+class TrainModel(NamedTuple):
+    """A train as compiled code sees it.
+
+    Attributes
+    ----------
+    train : ndarray of one record
+        `TRAIN`; an array, as numba is slow to take a record out of Python's hands.
+    shafts, meshes : ndarray of records
+        `SHAFT` and `MESH`.
+    y : ndarray, shape (2 N + works,)
+        State at the accepted time, with the works.
+    new, between : ndarray, same shape
+        At the end of a step, and between.
+    rates : ndarray, shape (16, 2 N + works)
+        Of the stages of a step; the first are those at the accepted time.
+    dense : ndarray, shape (7, 2 N + works)
+        Of the polynomial of a step.
+    weights : ndarray, shape (2 N,)
+        One over the tolerances.
+    own : ndarray, shape (4,)
+        State of one mesh in its own units.
+    few : ndarray, shape (n, EVENT_NUMBERS)
+        Events of one mesh at one time.
+    """
+
+    train: NDArray[Any]
+    shafts: NDArray[Any]
+    meshes: NDArray[Any]
+    y: Floats
+    new: Floats
+    between: Floats
+    rates: NDArray[np.float64]
+    dense: NDArray[np.float64]
+    weights: Floats
+    own: Floats
+    few: NDArray[np.float64]
+
+
+def blank_train(shafts: int, meshes: int) -> TrainModel:
+    """Room for a train."""
+    n = 2 * shafts + works_of(shafts, meshes)
+    return TrainModel(
+        np.zeros(1, TRAIN),
+        np.zeros(shafts, SHAFT),
+        np.zeros(meshes, MESH),
+        np.zeros(n),
+        np.zeros(n),
+        np.zeros(n),
+        np.zeros((16, n)),
+        np.zeros((7, n)),
+        np.zeros(2 * shafts),
+        np.zeros(4),
+        np.zeros((EVENTS_AT_ONCE, EVENT_NUMBERS)),
+    )
+
+
+name_type(blank_train(1, 1), "TrainModel")
+
+
+class TrainOutput(NamedTuple):
+    """Samples, events and rests of a block, before it is taken over.
+
+    Attributes
+    ----------
+    samples : ndarray, shape (n, columns)
+        See `gearidae.engine.train.observe.observe_train`.
+    events, rests : ndarray, shape (k, numbers)
+        See `gearidae.engine.train.record`.
+    """
+
+    samples: NDArray[np.float64]
+    events: NDArray[np.float64]
+    rests: NDArray[np.float64]
+
+
+name_type(TrainOutput(*(np.zeros((1, 1)) for _ in range(3))), "TrainOutput")

@@ -1,0 +1,196 @@
+"""Steps of a train's motion until a block of output is full: attempt, locate, sample, accept, account, switch."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from gearidae.compiled import compiled
+from gearidae.engine.events.record import EVENTS_AT_ONCE
+from gearidae.engine.integrate.driver import BOUND_EXCEEDED, CHATTER
+from gearidae.engine.train.events import (
+    accept_all,
+    next_train_stop,
+    pass_knots,
+    rebase_train,
+    switch_all,
+    train_guard,
+)
+from gearidae.engine.train.formula import attempt, make_polynomial, next_length, state_at
+from gearidae.engine.train.layout import TrainModel, TrainOutput
+from gearidae.engine.train.motion import motion
+from gearidae.engine.train.observe import (
+    account,
+    follow_forces,
+    follow_shafts,
+    observe_train,
+    wants_polynomial,
+)
+from gearidae.engine.train.rest import any_held
+
+UNDERFLOW: Final = -3
+"""IDA's flag for steps that have become too small."""
+LEAST_STEP: Final = 1e-15
+"""Of the time, or of the fastest time of the meshes."""
+LAST: Final = 1e-10
+"""Of a step: what would be left of the way to a stop is taken with it."""
+CLOSE: Final = 1e-15
+"""Of the time: a root is known to that."""
+SEARCHES: Final = 100
+
+
+@compiled
+def locate(tm: TrainModel, h: float) -> float:
+    """Share of a step, whose polynomial is known, just behind the first root of the guard that is found in it."""
+    n, train, between = 2 * len(tm.shafts), tm.train[0], tm.between
+    low, high = 0.0, 1.0
+    at_low = train.guard
+    state_at(tm, 1.0, n, between)
+    at_high = train_guard(tm, train.time + h, between, False)
+    least = CLOSE * max(train.time, train.tau) / h
+    side = 0
+    for i in range(SEARCHES):
+        if high - low <= least:
+            break
+        # guards of several kinds meet in the least of them: false position, and the middle now and then
+        share = high - at_high * (high - low) / (at_high - at_low)
+        if i % 3 == 2 or not low < share < high:
+            share = 0.5 * (low + high)
+        state_at(tm, share, n, between)
+        value = train_guard(tm, train.time + share * h, between, False)
+        if value > 0.0:
+            at_high *= 0.5 if side > 0 else 1.0
+            low, at_low, side = share, value, 1
+        else:
+            at_low *= 0.5 if side < 0 else 1.0
+            high, at_high, side = share, value, -1
+    return high
+
+
+@compiled
+def sample_due(tm: TrainModel, index: int) -> float:
+    """Time of a sample [s]: the first at the start, the last at the end itself, none beyond."""
+    train = tm.train[0]
+    if index >= train.samples:
+        return math.inf
+    if index == train.samples - 1:
+        return float(train.end)
+    return float(train.start + index * ((train.end - train.start) / (train.samples - 1)))
+
+
+@compiled
+def take_step(tm: TrainModel, stop: float) -> tuple[float, float]:
+    """Try steps until one passes; its length, 0 if they become too small, and that of the next one [s]."""
+    train = tm.train[0]
+    h = min(train.step, train.longest_step)
+    if any_held(tm):
+        h = min(h, train.rest_step)
+    left = stop - train.time
+    if h >= (1.0 - LAST) * left:
+        h = left
+    refused = False
+    while True:
+        error = attempt(tm, h)
+        after = next_length(h, error, refused)
+        if error <= 1.0:
+            return h, after
+        train.refused += 1
+        refused, h = True, after
+        if h < LEAST_STEP * max(train.time, train.tau):
+            return 0.0, 0.0
+
+
+@compiled
+def finish_train_step(tm: TrainModel, time: float, root: bool, stop: float, out: TrainOutput) -> None:
+    """Accept a step, account for it, and switch what has happened at its end; common to both drivers.
+
+    Parameters
+    ----------
+    tm : TrainModel
+        With the state at the end in ``new``, and rates at both ends in the first and the thirteenth row of ``rates``.
+    time : float
+        Of the end [s].
+    root : bool
+        Whether a guard has fallen there.
+    stop : float
+        Time of the coming knot, or the end of the run [s].
+    out : TrainOutput
+        Of the block.
+    """
+    train, y, new = tm.train[0], tm.y, tm.new
+    follow_shafts(tm, time - train.time)
+    flying = accept_all(tm, time, new)
+    train.steps += 1
+    train.flight_steps += flying == len(tm.meshes)
+    if train.balance != 0:
+        account(tm, y, new)
+    for j in range(y.size):
+        y[j] = new[j]
+        tm.rates[0, j] = tm.rates[12, j]
+    train.time = time
+    if flying < 0:
+        train.error = BOUND_EXCEEDED
+        return
+    if root:
+        train.fresh = 1
+        train.restarts += 1
+        if switch_all(tm, time, y, out):
+            train.error = CHATTER
+        if train.stop_pitches - abs(y[train.load] + train.turns) <= 0.0:
+            train.done = 1
+    if time >= stop:
+        train.fresh = 1
+        if pass_knots(tm, time, out):
+            train.done = 1
+    if abs(y[train.load]) > train.period:
+        rebase_train(tm, y)
+
+
+@compiled
+def has_room(tm: TrainModel, out: TrainOutput) -> bool:
+    """Whether a block has room for all that may happen at one time."""
+    train = tm.train[0]
+    enough = train.events + len(tm.meshes) * EVENTS_AT_ONCE <= out.events.shape[0]
+    return bool(enough and train.rests + len(tm.shafts) <= out.rests.shape[0])
+
+
+@compiled
+def advance_train(tm: TrainModel, out: TrainOutput, most: int) -> None:
+    """Take steps until the run is done, the block is full, or so many have been taken."""
+    train, n, y, new = tm.train[0], 2 * len(tm.shafts), tm.y, tm.new
+    for _ in range(most):
+        if train.done != 0 or train.error != 0 or not has_room(tm, out):
+            return
+        if train.fresh != 0:
+            motion(tm, train.time, y, tm.rates[0])
+            train.guard, train.fresh = train_guard(tm, train.time, y, True), 0
+        stop = next_train_stop(tm)
+        h, after = take_step(tm, stop)
+        if h == 0.0:
+            train.error = UNDERFLOW
+            return
+        time = stop if h == stop - train.time else train.time + h
+        value, share = train_guard(tm, time, new, True), 1.0
+        root, due = value < 0.0, sample_due(tm, train.next_sample)
+        seen = wants_polynomial(tm)
+        if (root and train.guard > 0.0) or due <= time or seen:
+            make_polynomial(tm, h)
+            if root and train.guard > 0.0:
+                share = locate(tm, h)
+                if share < 1.0:
+                    time = train.time + share * h
+                    state_at(tm, share, y.size, new)
+            while due <= time:
+                if train.rows >= out.samples.shape[0]:
+                    return  # the step is taken again with room for its samples
+                state_at(tm, min((due - train.time) / h, 1.0), n, tm.between)
+                observe_train(tm, due, tm.between, out.samples[train.rows])
+                train.rows += 1
+                train.next_sample += 1
+                due = sample_due(tm, train.next_sample)
+            if seen:
+                follow_forces(tm, share, h)
+        if share < 1.0:
+            motion(tm, time, new, tm.rates[12])
+        train.guard, train.step = value, after
+        finish_train_step(tm, time, root, stop, out)

@@ -1,0 +1,46 @@
+"""The start of a train's run: histories of its meshes, directions of its shafts, and a first step."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from gearidae.compiled import compiled
+from gearidae.engine.events.cutoff import begin_within, watches_cutoff
+from gearidae.engine.events.histories import begin
+from gearidae.engine.events.law_switches import set_law_sides, set_law_window
+from gearidae.engine.model.addresses import model_at
+from gearidae.engine.model.state import U
+from gearidae.engine.observers import adhesion_loss
+from gearidae.engine.train.layout import TrainModel
+from gearidae.engine.train.motion import mesh_state, motion
+from gearidae.engine.train.observe import begin_extremes, kinetic_energy_of
+from gearidae.engine.train.rest import begin_rest
+
+FIRST: Final = 1e-3
+"""First step, of the fastest time of the meshes."""
+
+
+@compiled(makes_arrays=True)
+def begin_train(tm: TrainModel) -> None:
+    """Set a train to the start of a run, at the state ``tm.y``."""
+    train, y = tm.train[0], tm.y
+    t = train.time = train.start
+    for k in range(len(tm.meshes)):
+        mesh = tm.meshes[k]
+        m, time = model_at(mesh.place), t / mesh.time_unit
+        set_law_window(m)
+        e = mesh_state(tm, k, m, y, tm.own)
+        m.state.initial_lead = tm.own[U] + e.value
+        begin(m, time, tm.own)
+        if m.scene.law_switches != 0:
+            set_law_sides(m, time, tm.own)
+        if watches_cutoff(m):
+            begin_within(m, tm.own)
+        energy = m.state.energy
+        energy.adhesion_loss = energy.radius_work = 0.0
+        adhesion_loss.begin(m, time)
+    begin_rest(tm, t, y)
+    motion(tm, t, y, tm.rates[0])
+    begin_extremes(tm, t, y)
+    train.kinetic = train.peak_kinetic = train.throughput = kinetic_energy_of(tm, y)
+    train.step, train.fresh = FIRST * train.tau, 1
