@@ -66,8 +66,7 @@ class TrainSolution:
     time : ndarray, shape (n,)
         Sample times [s].
     samples : dict of str to ndarray
-        Those of `SHAFT_SAMPLES`, shape (shafts, n), of `MESH_SAMPLES`, shape (meshes, n), and of `COMMON_SAMPLES`, shape
-        (n,).
+        `SHAFT_SAMPLES` in the shape (shafts, n), `MESH_SAMPLES` in (meshes, n), and `COMMON_SAMPLES` in (n,).
     events : dict of str to ndarray, shape (m,)
         In the order of time: ``time`` [s], ``kind`` (an `EventKind`), ``mesh`` and ``shaft`` (numbers, -1 for none),
         ``flank`` (a `Flank`), ``pair``, ``gap_rate`` [m/s] and ``force`` [N], as for `Events`.

@@ -6,7 +6,7 @@ from typing import Any, Final
 
 from gearidae.engine.train import solve_train
 from gearidae.runs.simulation import simulate
-from gearidae.scene import Scene, TrainScene, preset
+from gearidae.scene import Scene, TrainScene, preset, require_gears
 
 _GEARS: Final = "teodorescu2009_low_speed"
 SCENES: Final[tuple[tuple[str, dict[str, Any]], ...]] = (
@@ -30,7 +30,7 @@ def scenes() -> list[Scene]:
 
 def train() -> TrainScene:
     """Return a train of two meshes with a moment to run."""
-    pair = preset(_GEARS).replace({"run.duration": 1e-8, "run.samples": 3})
+    pair = require_gears(preset(_GEARS).replace({"run.duration": 1e-8, "run.samples": 3}))
     data, gears, geometry = pair.to_dict(), pair.gears, pair.geometry
     del data["gears"]
     sizes = {"pressure_angle": gears.pressure_angle, "face_width": gears.face_width}

@@ -402,6 +402,37 @@ def test_balance_of_meshes_that_adhere_closes():
     assert kept.sum() == pytest.approx(expected, rel=1e-6, abs=0.0)
 
 
+# -- steady motion and starting -------------------------------------------------------------------------------------
+
+
+def test_steady_motion_and_where_its_work_goes():
+    """Means over 300 us of the run, which the closed form has to 1e-4."""
+    tables = rubbing(initial={"gear_speed": 1368.1, "gap": "36 nm", "mesh_phase": 0.3})
+    first, whole = (solve_train(Scene.from_dict(tables), t_end=end, samples=601) for end in (300e-6, 600e-6))
+    assert whole.samples["shaft_speed"][2, 300:].mean() == pytest.approx(1368.0636, rel=2e-6)
+    drive = whole.energy["drive_work"] - first.energy["drive_work"]
+    load = whole.energy["load_work"] - first.energy["load_work"]
+    assert load / drive == pytest.approx(0.936925, rel=1e-5)
+    hubs = (whole.shaft_totals["hub_loss"] - first.shaft_totals["hub_loss"]) / drive
+    np.testing.assert_allclose(hubs, [0.025270, 0.025475, 0.012305], rtol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("torque", "speed", "pitches"),
+    [(7.9e-12, 0.0, 0.0184), (8.2e-12, 119.6117, 0.857)],
+    ids=["rests", "turns"],
+)
+def test_a_chain_starts_above_its_starting_torque(torque, speed, pitches):
+    """Beside 8.0529e-12 N m, of the closed form for all three hubs and a load of 3e-11 N m."""
+    initial = {"gear_speed": 0.0, "gap": "36 nm", "mesh_phase": 0.3}
+    tables = chain("0 deg", hubs=0.3, drive={"torque": torque}, initial=initial)
+    solution = solve_train(Scene.from_dict(tables), t_end=1e-3, samples=101, rtol=1e-9)
+    assert solution.samples["shaft_speed"][2, -1] == pytest.approx(speed, rel=1e-6)
+    turned = solution.samples["shaft_angle"][2, -1] * 76 / (2.0 * math.pi)
+    assert turned == pytest.approx(pitches, abs=6e-4)
+    assert (solution.shaft_totals["rest_time"] > 0.0).all() == (speed == 0.0)
+
+
 # -- properties ------------------------------------------------------------------------------------------------------
 
 
@@ -428,7 +459,7 @@ def test_an_idler_without_mass_hands_its_force_on():
     """Of 1.5e-23 kg m^2: both forces are one, and speeds are nearly those of the pair 19:76."""
     tables = chain()
     tables["shafts"]["idler"]["inertia"] = 1.5e-23
-    solution = solve_train(Scene.from_dict(tables), t_end=50e-6, samples=2)
+    solution = solve_train(Scene.from_dict(tables), t_end=50e-6, samples=2, rtol=1e-9)
     first, second = solution.samples["mesh_force"][:, -1]
     assert first == pytest.approx(second, rel=1e-5, abs=0.0)
     speeds = solution.samples["shaft_speed"][[0, 2], -1]
@@ -448,9 +479,9 @@ def test_an_offset_in_a_tree_opens_its_mesh_and_moves_no_shaft():
 
 
 def test_both_drivers_give_the_same():
-    """The other driver's formulas are IDA's own; at 1e-8 they agree to 3e-8 of speeds and 1e-6 of forces and works."""
+    """The other driver's formulas are IDA's own; at 1e-8 they agree to 4e-8 of speeds while the chain rings hardest."""
     native, portable = (solved(rubbing, 12e-6, 3, 1e-8, backend) for backend in ("native", "sksundae"))
-    for name, near in (("shaft_speed", 3e-8), ("mesh_force", 1e-6), ("hub_load", 1e-6)):
+    for name, near in (("shaft_speed", 1e-7), ("mesh_force", 1e-6), ("hub_load", 1e-6)):
         np.testing.assert_allclose(portable.samples[name], native.samples[name], rtol=near)
     np.testing.assert_allclose(portable.shaft_totals["hub_loss"], native.shaft_totals["hub_loss"], rtol=1e-6)
     assert portable.energy["drive_work"] == pytest.approx(native.energy["drive_work"], rel=1e-8, abs=0.0)
