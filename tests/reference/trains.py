@@ -5,6 +5,8 @@ Rough silicon gears of a microengine (wheels of 64 um and more, summits of 130 n
 
 import math
 
+from gearidae.scene import Scene, preset
+
 MODULE = 2.0 * 34.715e-6 / (19 * math.cos(math.radians(20.0)))
 SPLIT = 0.9022140061705, 0.4031857360488
 """Angles of the split path, at which its loop closes: the sum of the teeth's turns is 31 half pitches."""
@@ -91,3 +93,22 @@ def compound(angles=(0.0, "60 deg", "-30 deg"), **changed):
         for number, ((driver, driven), angle) in enumerate(zip(ways, angles, strict=True), 1)
     }
     return tables(shafts=shafts, meshes=meshes, **changed)
+
+
+def bare(teeth, meshes, **changed):
+    """A train of bare gears of the paper, by the teeth of its shafts and by its meshes: teeth that adhere strongly."""
+    paper = preset("teodorescu2009")
+    data = paper.to_dict()
+    gears = data.pop("gears")
+    data["mesh"] |= {
+        "module": paper.geometry.module,
+        "pressure_angle": gears["pressure_angle"],
+        "face_width": gears["face_width"],
+        "radius_force": False,
+    }
+    data["coating"]["sam_fraction"] = 0.0
+    data["shafts"] = {
+        name: {"gears" if isinstance(count, dict) else "teeth": count, "inertia": 1e-20}
+        for name, count in teeth.items()
+    }
+    return Scene.from_dict(data | {"meshes": meshes, "load": {"torque": 0.0}} | changed)

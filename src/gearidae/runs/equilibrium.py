@@ -149,7 +149,7 @@ def pair_law(scene: Scene) -> PairLaw:
         which the pair has been pressed, `opened` (optional) the widest to which it has come since.
     """
     scene = require_gears(scene)
-    roughness, parts = scene.surface.roughness, material_laws(scene)
+    roughness, parts, attracts = scene.surface.roughness, material_laws(scene), scene.attracts
 
     def law(gap: float, joined: float, radius: float, opened: float = -math.inf) -> float:
         at, low, high = gap / roughness, joined / roughness, opened / roughness
@@ -158,7 +158,7 @@ def pair_law(scene: Scene) -> PairLaw:
             height = min(max(low, high - limit), at)
             total += scale * law_value(table, at + offset, height + offset)[0]
         force = math.sqrt(2.0 * radius * roughness) * float(total)
-        if scene.attracts:
+        if attracts:
             force += sum(float(part.attraction(gap, radius, scene)) for part in parts.values())
         return force
 

@@ -22,7 +22,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from functools import partial
+from operator import itemgetter
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -58,6 +58,41 @@ class Exit(NamedTuple):
     joined: float
 
 
+class LeavingPair:
+    """A leaving pair of a scene and the pairs that stay, in slow motion.
+
+    Attributes
+    ----------
+    places : ndarray
+        Distances from the end of the path on [m], between which the largest resistance is looked for.
+    """
+
+    def __init__(self, scene: GearScene) -> None:
+        self._scene, self._law, self._rho = scene, pair_law(scene), scene.mesh.tip_relief_radius
+        self._leaving, self._staying = leaving_radii(scene)
+        law_of_one = law_of_tip(scene.contact.asperity, asperity_of(scene.surface), 1.0)  # in metres
+        reach = _REACH * scene.surface.roughness + law_of_one.detach
+        self.places = np.linspace(0.0, math.sqrt(2.0 * self._rho * reach), _STEPS + 1)
+
+    def settled(self, force: float) -> float:
+        """Gap of all pairs at the end of the path [m], pressed by a force alone [N]."""
+        radii = (self._leaving, *self._staying)
+        return settled_gap(
+            self._scene, lambda gap: sum(self._law(gap, gap, radius) for radius in radii) - force
+        )
+
+    def balanced(self, beyond: float, near: float, joined: float, force: float) -> tuple[float, float]:
+        """Depth of the gap [m] at a place of the tip, next to a gap where forces nearly balance; the resistance [N]."""
+        opened = beyond**2 / (2.0 * self._rho)
+
+        def balance(gap: float) -> float:
+            stays = sum(self._law(gap, joined, radius) for radius in self._staying)
+            return stays + self._law(gap + opened, joined, self._leaving) - force
+
+        gap = nearest_gap(self._scene, balance, near)
+        return -gap, -self._law(gap + opened, joined, self._leaving) * beyond / self._rho
+
+
 def holding_forces(scene: GearScene, force: float, impacts: int) -> list[float]:
     """Largest resistance of the leaving pair at successive mesh exits [N], see `exits`."""
     return [leaving.resistance for leaving in exits(scene, force, impacts)]
@@ -79,74 +114,59 @@ def exits(scene: GearScene, force: float, impacts: int) -> list[Exit]:
     -------
     list of Exit
     """
-    law, rho = pair_law(scene), scene.mesh.tip_relief_radius
-    leaving, staying = leaving_radii(scene)
-    law_of_one = law_of_tip(scene.contact.asperity, asperity_of(scene.surface), 1.0)  # in metres
-    reach = _REACH * scene.surface.roughness + law_of_one.detach
-    ends = np.linspace(0.0, math.sqrt(2.0 * rho * reach), _STEPS + 1)
-
-    def loading(gap: float) -> float:
-        return sum(law(gap, gap, radius) for radius in (leaving, *staying)) - force
-
-    def balanced(beyond: float, near: float, joined: float) -> tuple[float, float]:
-        """Depth of the gap at a place of the tip, next to a gap where the forces nearly balance, and the resistance."""
-        opened = beyond**2 / (2.0 * rho)
-
-        def balance(gap: float) -> float:
-            stays = sum(law(gap, joined, radius) for radius in staying)
-            return stays + law(gap + opened, joined, leaving) - force
-
-        gap = nearest_gap(scene, balance, near)
-        return -gap, -law(gap + opened, joined, leaving) * beyond / rho
-
-    joined = gap = settled_gap(scene, loading)
+    pair = LeavingPair(scene)
+    joined = gap = pair.settled(force)
     followed_exits = []
     for _ in range(impacts):
+
+        def at(beyond: float, near: Sequence[float], joined: float = joined) -> tuple[float, float]:
+            return pair.balanced(beyond, -near[0], joined, force)
+
         followed = [(-gap, 0.0)]
-        for beyond in ends[1:]:
-            followed.append(balanced(float(beyond), -followed[-1][0], joined))
-        deepest, most = (
-            _largest(partial(balanced, joined=joined), ends, followed, which) for which in (0, 1)
-        )
+        for beyond in pair.places[1:]:
+            followed.append(at(float(beyond), followed[-1]))
+        deepest, most = (largest(at, pair.places, followed, which)[which] for which in (0, 1))
         joined, gap = min(joined, -deepest), -followed[-1][0]
         followed_exits.append(Exit(most, joined))
     return followed_exits
 
 
-def _largest(
-    at: Callable[[float, float], tuple[float, float]],
+def largest(
+    at: Callable[[float, Sequence[float]], Sequence[float]],
     places: Floats,
-    known: Sequence[tuple[float, float]],
+    known: Sequence[Sequence[float]],
     which: int,
-) -> float:
-    """Largest depth or resistance along the tip, by golden section between the neighbours of the largest known one.
+) -> Sequence[float]:
+    """What holds where one of several numbers is largest, by golden section between the neighbours of a known place.
 
-    It has a cusp where the asperities that were pressed deepest let go, so that no parabola through it helps.
+    Resistance and depth have a cusp where the asperities that were pressed deepest let go, so that no parabola through
+    it helps.
 
     Parameters
     ----------
     at : callable
-        Depth and resistance of a place and a gap near that of the balance.
+        The numbers at a place, given those of a place beside it.
     places, known
-        Places from the end of the path on, and what `at` gives there.
+        Places in order, and what `at` gives there.
     which : int
-        0 for the depth, 1 for the resistance.
+        Index of the number.
     """
     k = max(range(len(known)), key=lambda n: known[n][which])
     before = max(k - 1, 0)
     low, high = float(places[before]), float(places[min(k + 1, len(places) - 1)])
-    near, part, error = -known[before][0], 0.5 * (math.sqrt(5.0) - 1.0), _PLACE_ERROR * (high - low)
+    near, part, error = known[before], 0.5 * (math.sqrt(5.0) - 1.0), _PLACE_ERROR * (high - low)
     inner, outer = high - part * (high - low), low + part * (high - low)
-    at_inner, at_outer = at(inner, near)[which], at(outer, near)[which]
-    most = max(known[k][which], at_inner, at_outer)
+    at_inner, at_outer = at(inner, near), at(outer, near)
+    most = max(known[k], at_inner, at_outer, key=itemgetter(which))
     while high - low > error:
-        if at_inner > at_outer:
+        if at_inner[which] > at_outer[which]:
             high, outer, at_outer = outer, inner, at_inner
             inner = high - part * (high - low)
-            at_inner = at(inner, near)[which]
+            at_inner = at(inner, near)
+            most = max(most, at_inner, key=itemgetter(which))
         else:
             low, inner, at_inner = inner, outer, at_outer
             outer = low + part * (high - low)
-            at_outer = at(outer, near)[which]
-        most = max(most, at_inner, at_outer)
+            at_outer = at(outer, near)
+            most = max(most, at_outer, key=itemgetter(which))
     return most

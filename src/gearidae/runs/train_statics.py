@@ -11,7 +11,7 @@ with the compliance of the contacts where shafts share their load in a loop. A m
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import replace
 from typing import Final
 
@@ -228,14 +228,25 @@ def hub_loads(train: Train, forces: Floats) -> Floats:
     return loads
 
 
-def starting_torque(scene: TrainScene) -> tuple[float, Floats]:
-    """Torque of the drive that overcomes all dry loads and hubs, without adhesion of the teeth.
+def starting_torque(
+    scene: TrainScene, held: Floats | None = None, *, hubs: Collection[int] | None = None
+) -> tuple[float, Floats]:
+    """Torque of the drive that overcomes all dry loads and hubs, and what adhesion of the teeth holds.
 
     From the last shaft back to the drive, each is on the point of slipping,
 
-        R_b F = sum R_a F' + dry + mu [r (|F n - V| + A) + r_d P],
+        R_b (F - H) = sum R_a F' + dry + mu [r (|F n - V| + A) + r_d P],
 
     with the forces F' of the meshes that it drives and their vector sum V.
+
+    Parameters
+    ----------
+    scene : Scene
+        A train.
+    held : ndarray, shape (meshes,), optional
+        Forces H at the driven gears' base circles that adhesion takes [N]; default none.
+    hubs : collection of int, optional
+        Numbers of the shafts whose hubs have friction; default all.
 
     Returns
     -------
@@ -244,32 +255,54 @@ def starting_torque(scene: TrainScene) -> tuple[float, Floats]:
     forces : ndarray, shape (meshes,)
         [N].
     """
+    return _limit(scene, held, hubs, 1.0)
+
+
+def run_back_torque(scene: TrainScene) -> tuple[float, Floats]:
+    """Torque of the drive below which the train runs back if its dry loads are torques that push it back.
+
+    As `starting_torque` with the friction of the hubs reversed, and without adhesion: what a lock or a weight needs.
+
+    Returns
+    -------
+    torque : float
+        [N m]; at most 0 where it cannot be driven back, NaN where a loop shares its load.
+    forces : ndarray, shape (meshes,)
+        [N].
+    """
+    return _limit(scene, None, None, -1.0)
+
+
+def _limit(
+    scene: TrainScene, held: Floats | None, hubs: Collection[int] | None, way: float
+) -> tuple[float, Floats]:
+    """Torque of the drive at which the train begins to move forward (way 1) or back (-1), and forces of the meshes."""
     train = scene.train
     forces = np.full(len(train.meshes), math.nan)
-    if len(train.meshes) > len(train.shafts) - 1:
+    if train.loops:
         return math.nan, forces
     dry = _resistances(scene)[0]
     shafts = list(scene.shafts.values())
-    for number in reversed(_outwards(train)):
-        hub = shafts[number].hub
+    for number in reversed(outwards(train)):
+        hub = shafts[number].hub if hubs is None or number in hubs else None
         driven = [k for k, mesh in enumerate(train.meshes) if mesh.a == number]
         pushed = sum((forces[k] * line_of_action(train, train.meshes[k]) for k in driven), np.zeros(2))
-        constant = dry[number] + (0.0 if hub is None else hub.torque(0.0))
+        constant = dry[number] + way * (0.0 if hub is None else hub.torque(0.0))
         constant += sum(train.meshes[k].geometry.base_radius_pinion * forces[k] for k in driven)
         arm = 0.0 if hub is None else hub.arm
         if number == train.drive:
-            return float(constant + arm * math.hypot(*pushed)), forces
+            return float(constant + way * arm * math.hypot(*pushed)), forces
         mine = next(k for k, mesh in enumerate(train.meshes) if mesh.b == number)
         mesh = train.meshes[mine]
-        forces[mine] = _slipping(
-            mesh.geometry.base_radius_gear, arm, constant, line_of_action(train, mesh), pushed
-        )
+        radius = mesh.geometry.base_radius_gear
+        constant += 0.0 if held is None else radius * held[mine]
+        forces[mine] = _slipping(radius, arm, constant, line_of_action(train, mesh), pushed, way)
         if math.isinf(forces[mine]):
             return math.inf, forces
     raise AssertionError("the drive's shaft is the first")
 
 
-def _outwards(train: Train) -> list[int]:
+def outwards(train: Train) -> list[int]:
     """Numbers of the shafts of a train without loops, each after the one that drives it."""
     order = [train.drive]
     for number in order:
@@ -277,19 +310,28 @@ def _outwards(train: Train) -> list[int]:
     return order
 
 
-def _slipping(radius: float, arm: float, constant: float, line: Floats, pushed: Floats) -> float:
-    """Smallest force F with ``R F = C + m |F n - V|``; infinite where there is none."""
+def _slipping(
+    radius: float, arm: float, constant: float, line: Floats, pushed: Floats, way: float = 1.0
+) -> float:
+    """Force F with ``R F = C + way m |F n - V|``: the smallest of a start, infinite where there is none."""
+    candidates = balancing_forces(radius, arm, constant, line, pushed)
+    sides = [force for force in candidates if way * (radius * force - constant) >= -1e-12 * abs(constant)]
+    return min(sides, default=math.inf) if way > 0.0 else max(sides, default=0.0)
+
+
+def balancing_forces(radius: float, arm: float, constant: float, line: Floats, pushed: Floats) -> list[float]:
+    """Both forces F with ``(R F - C)^2 = m^2 |F n - V|^2``; none where a hub locks."""
     square = radius**2 - arm**2
     half = radius * constant - arm**2 * float(line @ pushed)
     rest = constant**2 - arm**2 * float(pushed @ pushed)
-    root = half**2 - square * rest
+    # half^2 - square rest, without the difference of near numbers: exactly 0 without a hub
+    away, across = radius * pushed - constant * line, line[0] * pushed[1] - line[1] * pushed[0]
+    root = arm**2 * float(away @ away - (arm * across) ** 2)
     if root < 0.0:
-        return math.inf
-    # the two roots without the difference of near numbers; only one has R F above C where the hub does not lock
+        return []
+    # the two roots without the difference of near numbers
     large = half + math.copysign(math.sqrt(root), half)
-    candidates = [large / square if square != 0.0 else math.inf, rest / large if large != 0.0 else 0.0]
-    fitting = [force for force in candidates if radius * force >= constant * (1.0 - 1e-12)]
-    return min(fitting, default=math.inf)
+    return [large / square if square != 0.0 else math.inf, rest / large if large != 0.0 else 0.0]
 
 
 def overlapping(train: Train) -> Iterator[tuple[str, str]]:

@@ -15,6 +15,7 @@ from gearidae.scene.scene import (
     TrainScene,
     describe_key,
     describe_keys,
+    is_long_train,
     require_gears,
 )
 from gearidae.scene.shafts import Meshing, Shaft
@@ -52,6 +53,7 @@ __all__ = [
     "differences",
     "dump_case",
     "dump_keys",
+    "is_long_train",
     "load_case",
     "nearest_preset",
     "preset",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, Any, Self
+from typing import TYPE_CHECKING, Annotated, Any, Self, TypeGuard
 
 from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 
@@ -498,6 +498,11 @@ class RollerScene(Scene):
         check_no_friction(self)
 
 
+def is_long_train(scene: Scene) -> TypeGuard[TrainScene]:
+    """Whether a scene is a train of several meshes; one of one mesh is a pair of gears."""
+    return isinstance(scene, TrainScene) and len(scene.meshes) > 1
+
+
 def require_gears(scene: Scene) -> GearScene:
     """Refuse anything but a scene with a pair of gears, which is returned; of a train with one mesh the short form.
 
@@ -507,7 +512,7 @@ def require_gears(scene: Scene) -> GearScene:
         If it is something else.
     """
     if isinstance(scene, TrainScene):
-        if len(scene.meshes) > 1:
+        if is_long_train(scene):
             raise SceneError(
                 "meshes",
                 f"({len(scene.meshes)} meshes)",

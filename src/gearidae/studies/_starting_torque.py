@@ -11,20 +11,19 @@ from typing import TYPE_CHECKING, Any, Unpack
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
 from gearidae.archive.provenance import provenance
 from gearidae.errors import SceneError
 from gearidae.runs.execution import Execution, RunOptions, prepared
 from gearidae.runs.release import holding_forces
 from gearidae.runs.run_cache import RunCache
-from gearidae.runs.running import FAILS, failure_of, solve_to_end, unfinished, unsolved
-from gearidae.scene import require_gears
+from gearidae.runs.running import FAILS, SomeScene, failure_of, solve_to_end, unfinished, unsolved
+from gearidae.scene import is_long_train, require_gears
 from gearidae.scene.carried import numbers_of
 from gearidae.scene.joints import ages
 from gearidae.scene.quantity import number, switch, whole
 from gearidae.studies._starting_seeds import QUANTILES, quantiles, starting_torques
-from gearidae.studies.bracket import STRIDE, bracket, next_value
+from gearidae.studies.bracket import STRIDE, bracket, crossing, next_value
 from gearidae.studies.declared.starting_torque import (
     GEAR_RESTS,
     GEARS,
@@ -37,10 +36,11 @@ from gearidae.studies.requirements import require_constant
 from gearidae.studies.specimens import gears_of, seed_of, seeds_that_draw
 from gearidae.studies.starting_parts import PARTS, Starting, parts_of
 from gearidae.studies.starting_ramp import nothing_followed, pitch_of
+from gearidae.studies.train_starting import part_names, require_static, static_start, train_parts
 
 if TYPE_CHECKING:
     from gearidae.records import Solution
-    from gearidae.scene import GearScene, Scene
+    from gearidae.scene import GearScene, Scene, TrainScene
     from gearidae.studies.study import Study
 
 log = logging.getLogger(__name__)
@@ -61,9 +61,9 @@ def static_starting_torque(scene: Scene, *, impacts: int = 3, lowest: float | No
     Parameters
     ----------
     scene : Scene
-        With gears.
+        With gears, or a train without loops.
     impacts : int, optional
-        Mesh exits that have to be passed. A worn contact is pressed deeper by each one, and needs more torque the
+        Mesh exits that have to be passed, of each mesh of a train. A worn contact is pressed deeper by each one, and needs more torque the
         more there are.
     lowest : float, optional
         Torque below which nothing is looked for, beyond what dry resistance and joints take [N m]; by default a
@@ -72,7 +72,7 @@ def static_starting_torque(scene: Scene, *, impacts: int = 3, lowest: float | No
     Returns
     -------
     float
-        Torque on the pinion [N m]: the M10 at which ``M10/R1 = max(-s' W_l) + M20/R2`` holds at the worst exit, see
+        Torque on the pinion, or on the shaft of a train's drive [N m] (`gearidae.runs.train_release`): the M10 at which ``M10/R1 = max(-s' W_l) + M20/R2`` holds at the worst exit, see
         `gearidae.runs.release`; with friction, ``M10 = i (R2 max(-s' W_l) + M20 + m2) + m1`` of
         `gearidae.studies.starting_parts`, friction of the flanks being that under the scene's own torque. What
         the dry resistance and the joints take (0 without any) if adhesion does not hold the gear even at the lowest
@@ -83,24 +83,18 @@ def static_starting_torque(scene: Scene, *, impacts: int = 3, lowest: float | No
     SceneError
         If the scene has no gears, or a setting is not allowed.
     """
+    if is_long_train(scene):
+        return static_start(_require_train(scene, impacts), impacts, _lowest(scene, lowest))[0]
     scene = _require(scene, impacts)
     lowest, whole, geometry = _lowest(scene, lowest), Starting(scene), scene.geometry
     dry, lever = whole.torque(), geometry.base_radius_gear * whole.ratio
     carried = dry - whole.joint_torques[0]  # by the teeth
 
-    def surplus(logarithm: float) -> float:
-        force = (carried + math.exp(logarithm)) / geometry.base_radius_pinion
-        return math.exp(logarithm) - max(holding_forces(scene, force, impacts)) * lever
+    def surplus(torque: float) -> float:
+        force = (carried + torque) / geometry.base_radius_pinion
+        return torque - max(holding_forces(scene, force, impacts)) * lever
 
-    tried: dict[float, bool] = {}
-    while (torque := next_value(tried, lowest, lowest, STRIDE)) is not None:
-        tried[torque] = surplus(math.log(torque)) > 0.0
-    if tried[lowest]:
-        return dry
-    if not any(tried.values()):
-        return math.inf
-    low, high = map(math.log, bracket(tried))
-    return dry + math.exp(float(brentq(surplus, low, high, xtol=1e-3)))
+    return dry + crossing(surplus, lowest)
 
 
 def starting_torque(
@@ -120,7 +114,7 @@ def starting_torque(
     Parameters
     ----------
     scene : Scene
-        With gears. Its constant drive torque is replaced, a schedule of the drive taken away, its initial speed set to
+        With gears, or a train. Its constant drive torque is replaced, a schedule of the drive taken away, its initial speed set to
         zero.
     sam_fraction : array_like or 'own', optional
         Fractions of the coating; by default 13 from 1 to 0.4. ``own`` stands for the scene's own coating as it is, and
@@ -147,6 +141,9 @@ def starting_torque(
     Returns
     -------
     Dataset, dims (sam_fraction)
+        Of a train with several meshes ``static_torque`` alone, with its ``parts``: dry resistance, ``adhesion of MESH``
+        for each mesh, ``hub of SHAFT`` for each shaft, in N m on the shaft of the drive. Otherwise
+
         ``static_torque``: without inertia, see `static_starting_torque`. ``simulated_torque``: a run from rest turns
         the gear by `impacts` pitches at this torque and not at ``simulated_stuck``, which is smaller by `tolerance` or
         less. Both are what dry resistance and joints take where adhesion does not hold even at the lowest torque, and
@@ -183,6 +180,10 @@ def starting_torque(
     The two differ: a gear that comes along has momentum, which helps it over the first exits, and its contact has been
     pressed by the first touch harder than by the torque, which makes the next ones harder.
     """
+    if is_long_train(scene):
+        return _torques_of_train(
+            _require_train(scene, impacts), sam_fraction, impacts, lowest, (seeds, rest_time), options
+        )
     scene = _require(scene, impacts)
     tolerance, simulated = number("tolerance", tolerance), switch("simulated", simulated)
     if not 0.001 <= tolerance <= 1.0:
@@ -223,6 +224,50 @@ def starting_torque(
     return study.compute(
         execution, base, work, settings if rests is None else [RESTS.kind, *settings], origin=scene
     )
+
+
+def _torques_of_train(
+    scene: TrainScene,
+    sam_fraction: ArrayLike | None,
+    impacts: int,
+    lowest: float | None,
+    others: tuple[int | None, ArrayLike | None],
+    options: RunOptions,
+) -> xr.Dataset:
+    """Static starting torques of a train, and what takes them, over the coating that its meshes have in common."""
+    for name, value in zip(("seeds", "rest_time"), others, strict=True):
+        if value is not None:
+            raise SceneError(name, value, "must be left out of a train of several meshes")
+    points, scenes = _coatings(scene, "own" if sam_fraction is None else sam_fraction)
+    least, execution = _lowest(scene, lowest), Execution(**options, method=scene.run.method)
+
+    def work(_: RunCache | None) -> xr.Dataset:
+        starts = [static_start(variant, impacts, least) for variant in scenes]
+        torques = np.array([torque for torque, _ in starts])
+        parts = [
+            train_parts(variant, held) if math.isfinite(torque) else np.full(len(names), math.nan)
+            for variant, (torque, held) in zip(scenes, starts, strict=True)
+        ]
+        nothing = np.full(len(points), math.nan)
+        values = {
+            "static_torque": torques,
+            "simulated_torque": nothing,
+            "simulated_stuck": nothing,
+            "part": np.array(names),
+            "parts": np.array(parts),
+        }
+        attributes = {
+            **provenance(scene, "searched the starting torque of a train", swept=(_FRACTION,)),
+            "title": f"{scene.name}: starting torque",
+            "summary": "Smallest torque of the drive that takes a train through its mesh exits without inertia.",
+            "drive_torque": scene.drive.torque,
+            "drive_shaft": scene.train.shafts[scene.train.drive].name,
+            "impacts": impacts,
+        }
+        return STUDY.dataset(values, attributes).assign_coords(coordinate(STUDY, points))
+
+    names = part_names(scene)
+    return STUDY.compute(execution, scene, work, [points, impacts, least])
 
 
 def _torques_of_gears(
@@ -308,7 +353,7 @@ def _refuse_settings(**settings: Any) -> None:
             )
 
 
-def _coatings(base: GearScene, sam_fraction: ArrayLike | None) -> tuple[list[float], list[GearScene]]:
+def _coatings(base: SomeScene, sam_fraction: ArrayLike | None) -> tuple[list[float], list[SomeScene]]:
     """Fractions of the coating, and the scenes with them."""
     if isinstance(sam_fraction, str):
         if sam_fraction != "own":
@@ -448,7 +493,7 @@ def _dry(scene: GearScene) -> float:
     return pitch_of(scene).dry
 
 
-def _lowest(scene: GearScene, asked: float | None) -> float:
+def _lowest(scene: GearScene | TrainScene, asked: float | None) -> float:
     lowest = _LOWEST * abs(scene.drive.torque) if asked is None else number("lowest", asked, "N m")
     if not 0.0 < lowest < math.inf:
         allowed = (
@@ -460,8 +505,16 @@ def _lowest(scene: GearScene, asked: float | None) -> float:
 
 
 def _require(scene: Scene, impacts: int) -> GearScene:
-    require_constant(
-        gears := require_gears(scene), "a starting torque", "it holds against one load", ("load",)
-    )
-    whole("impacts", impacts, 1)
+    gears = require_gears(scene)
+    _require_one_load(gears, impacts)
     return gears
+
+
+def _require_train(scene: TrainScene, impacts: int) -> TrainScene:
+    _require_one_load(scene, impacts)
+    return require_static(scene)
+
+
+def _require_one_load(scene: Scene, impacts: int) -> None:
+    require_constant(scene, "a starting torque", "it holds against one load", ("load",))
+    whole("impacts", impacts, 1)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from itertools import pairwise
 
 STRIDE = 4.0
@@ -41,3 +41,24 @@ def next_value(tried: Mapping[float, bool], first: float, lowest: float, toleran
     if all(tried.values()):
         return max(min(tried) / STRIDE, lowest) if min(tried) > lowest else None
     return math.sqrt(holds * fails) if holds > (1.0 + tolerance) * fails else None
+
+
+def crossing(surplus: Callable[[float], float], lowest: float, error: float = 1e-3) -> float:
+    """Value at which a surplus becomes positive as the value grows, with a relative error.
+
+    Returns
+    -------
+    float
+        0 where it is positive at the lowest value already, infinite where it is at none.
+    """
+    from scipy.optimize import brentq  # which takes long to load
+
+    tried: dict[float, bool] = {}
+    while (value := next_value(tried, lowest, lowest, STRIDE)) is not None:
+        tried[value] = surplus(value) > 0.0
+    if tried[lowest]:
+        return 0.0
+    if not any(tried.values()):
+        return math.inf
+    low, high = map(math.log, bracket(tried))
+    return math.exp(float(brentq(lambda logarithm: surplus(math.exp(logarithm)), low, high, xtol=error)))

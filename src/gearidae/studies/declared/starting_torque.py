@@ -1,7 +1,7 @@
 """Search the smallest drive torque at which a gear at rest begins to turn against adhesion.
 
 Of discrete asperities (contact.roughness = "discrete"): the distribution over drawn gears, whose torque rises slowly
-until each has turned one pitch. Of drawn errors of teeth (mesh.pitch_error_rms), with --seeds: the torque of each gear.
+until each has turned one pitch. Of a train: the torque without inertia, and what each mesh and hub takes. Of drawn errors of teeth (mesh.pitch_error_rms), with --seeds: the torque of each gear.
 """
 
 from __future__ import annotations
@@ -80,7 +80,24 @@ def _call(
     return Call((fractions,), options, announcement)
 
 
+def _train_sentence(ds: xr.Dataset) -> str:
+    """Say what starts a train, and what takes most of it."""
+    shaft, torques = ds.attrs["drive_shaft"], ds["static_torque"].values
+    low, high = (with_prefix(float(f(torques)), "N m", 4) for f in (np.min, np.max))
+    if ds.sizes["sam_fraction"] > 1:
+        return f"The train starts at {low} to {high} on {shaft}, by its coating, without inertia."
+    if math.isinf(torques[0]):
+        return f"No torque on {shaft} starts the train: adhesion or a hub locks it."
+    parts = ds["parts"].isel(sam_fraction=0)
+    most = parts.isel(part=int(np.argmax(parts.values)))
+    share = 100.0 * float(most) / float(torques[0]) if torques[0] > 0.0 else 0.0
+    taken = f"; {most['part'].item()} takes {share:.3g} % of it" if share > 0.0 else ""
+    return f"The train starts at {low} on {shaft}, without inertia{taken}."
+
+
 def _sentence(ds: xr.Dataset) -> str:
+    if "drive_shaft" in ds.attrs:
+        return _train_sentence(ds)
     if ds.sizes["sam_fraction"] > 1:
         torques = _simulated(ds).values
         low, high = (with_prefix(float(f(torques)), "N m", 4) for f in (np.nanmin, np.nanmax))
@@ -128,14 +145,20 @@ def _points(ds: xr.Dataset) -> list[tuple[str, xr.Dataset]]:
 
 def _rows(ds: xr.Dataset) -> Rows:
     """Torques at each coverage or after each rest."""
-    yield "Starting torque on the pinion", "simulated", "sticks at, and without inertia"
+    train = "drive_shaft" in ds.attrs
+    if train:
+        yield f"Starting torque on {ds.attrs['drive_shaft']}", "", ""
+    else:
+        yield "Starting torque on the pinion", "simulated", "sticks at, and without inertia"
     for name, point in _points(ds):
         turns, sticks, static = (
             with_prefix(float(point[which]), "N m", 4)
             for which in ("simulated_torque", "simulated_stuck", "static_torque")
         )
         words = f"sticks at {sticks}, static {static}"
-        if np.isnan(point["simulated_torque"]):
+        if train:
+            turns, words = static, "without inertia"
+        elif np.isnan(point["simulated_torque"]):
             turns, words = "-", f"no simulated torque, static {static}"
             message = str(point["message"].values) if "message" in point else ""
             words += f": {message}" if message else ""
@@ -294,7 +317,7 @@ def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     percent = 100.0 * ds["sam_fraction"].values
     ax = _torques_over(ds, percent, ax)
     ax.set_yscale("log")
-    label_axis(ax.yaxis, _TORQUE_WORDS, "N m")
+    label_axis(ax.yaxis, f"starting torque on {ds.attrs.get('drive_shaft', 'the pinion')}", "N m")
     ax.set_xlabel("SAM (%)")
     ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
     if len(percent) > 1:
