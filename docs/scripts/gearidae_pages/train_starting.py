@@ -31,12 +31,12 @@ def design() -> gd.Scene:
     """Make a reduction of 48:1 in three stages, of the paper's gears, with a dry load."""
     gears = gd.preset("teodorescu2009")
     tables: dict[str, Any] = gears.to_dict()
-    del tables["gears"]
+    pair = tables.pop("gears")
     tables["name"] = "reduction of 48:1"
     tables["mesh"] |= {
         "module": gears.geometry.module,
         "pressure_angle": gears.geometry.pressure_angle,
-        "face_width": gears.gears.face_width,
+        "face_width": pair["face_width"],
         "radius_force": False,
     }
     tables["shafts"] = {

@@ -14,6 +14,7 @@ from gearidae.archive.dataset import dimension_names
 from gearidae.archive.end_state import END_DIGEST, end_state_of, fingerprint
 from gearidae.archive.provenance import SCENE_DIGEST, digest_of
 from gearidae.archive.rows import DIMS
+from gearidae.archive.train.variables import ALL, is_train
 from gearidae.archive.variables import ROLLER_EXTREMES, by_name
 from gearidae.errors import SceneError
 from gearidae.scene import Scene
@@ -95,7 +96,7 @@ def _wrong_times(ds: xr.Dataset) -> Iterator[str]:
 
 def _wrong_units(ds: xr.Dataset) -> Iterator[str]:
     roller = "roller" in json.loads(ds.attrs["scene"])
-    known = {**by_name(), **(ROLLER_EXTREMES if roller else {})}
+    known = {**by_name(), **(ROLLER_EXTREMES if roller else {}), **(ALL if is_train(ds) else {})}
     for name, variable in ds.variables.items():
         units = variable.attrs.get("units")
         if (catalogued := known.get(str(name))) is not None and units not in (None, catalogued.units):

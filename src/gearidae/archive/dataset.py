@@ -30,7 +30,7 @@ from gearidae.archive.variables import (
 )
 from gearidae.errors import SceneError
 from gearidae.populations.flanks import flanks_digest, flanks_of
-from gearidae.records import ROWS, Solution
+from gearidae.records import ROWS, Solution, Statistics
 from gearidae.scene import Scene, describe_key
 from gearidae.scene.combinations import bodies_reason
 from gearidae.scene.sampled import columns_of
@@ -77,7 +77,7 @@ def to_dataset(scene: Scene, solution: Solution) -> xr.Dataset:
             **provenance(scene, f"simulated {reached(solution):g} s"),
             "status": solution.status,
             "message": solution.message,
-            **_totals([solution]),
+            **statistics_attributes([solution.statistics]),
             **_contacts(scene, solution),
             **surface_regimes(scene),
             **_asperities_digest(scene),
@@ -193,7 +193,7 @@ def combine(
             **({} if keep.names is None else {"keep": json.dumps(keep.asked)}),
             "status": "finished" if done == len(solutions) else "partial",
             "message": "" if done == len(solutions) else f"{done} of {len(solutions)} runs finished",
-            **_totals(solutions),
+            **statistics_attributes([solution.statistics for solution in solutions]),
             **surface_regimes(scene),
         },
     )
@@ -281,9 +281,8 @@ def _key_attributes(key: str) -> dict[str, Any]:
     return {"long_name": f"{key}: {info.description}", "units": info.unit or "1"}
 
 
-def _totals(solutions: Sequence[Solution]) -> dict[str, Any]:
+def statistics_attributes(statistics: Sequence[Statistics]) -> dict[str, Any]:
     """Solver statistics added up over the runs, as attributes."""
-    statistics = [solution.statistics for solution in solutions]
     totals: dict[str, Any] = {name: sum(getattr(counts, name) for counts in statistics) for name in _COUNTERS}
     totals["wall_time"] = math.fsum(counts.wall_time for counts in statistics)
     for name in ("backend", "method"):

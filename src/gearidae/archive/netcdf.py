@@ -33,6 +33,7 @@ from gearidae.archive.provenance import SCHEMA_VERSION
 from gearidae.archive.rows import kinds_in, needed
 from gearidae.archive.target import as_path, whole_file
 from gearidae.archive.time_index import LARGEST_IN_MEMORY, in_memory, with_times
+from gearidae.archive.train.variables import COORDINATES, MESH_TOTALS, SHAFT_TOTALS, TRAIN_SAMPLES, is_train
 from gearidae.archive.unfinished import RunJournal
 from gearidae.archive.variables import ENERGY_BALANCE, OF_SWEPT_RUN
 from gearidae.errors import SceneError
@@ -245,6 +246,9 @@ def _check_layout(ds: xr.Dataset, path: str | os.PathLike[str]) -> None:
 
 def _expected(ds: xr.Dataset, scene: dict[str, Any]) -> tuple[str, ...]:
     """Variables that an archive of any version has at least."""
+    if is_train(ds):
+        rows = tuple(name for kind in kinds_in(ds) for name in needed(kind))
+        return ("time", *COORDINATES, *TRAIN_SAMPLES, *SHAFT_TOTALS, *MESH_TOTALS, *rows)
     later = {column.name for column in (*GEAR_SAMPLES, *ROLLER_SAMPLES) if column.since}
     sampled = tuple(name for name in sampled_columns(roller="roller" in scene) if name not in later)
     rows = tuple(name for kind in kinds_in(ds) for name in needed(kind))  # a user may drop them

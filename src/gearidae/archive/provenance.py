@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import gearidae
 from gearidae.asperities.tip import tabor_parameter, tabor_regime
+from gearidae.scene.scene import is_long_train
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -92,12 +93,20 @@ def surface_regimes(scene: Scene) -> dict[str, float | str]:
 
 
 def _subject(scene: Scene) -> str:
+    if is_long_train(scene):
+        return "train of rough gears"
     return "rough gear pair" if scene.roller is None else "rough roller on a plane"
 
 
 def _summary(scene: Scene, swept: tuple[str, ...]) -> str:
     """Say in two or three sentences what the numbers are."""
-    if scene.roller is None:
+    if is_long_train(scene):
+        what = (
+            "Simulated motion of a train of micro gears whose rough teeth adhere to each other and are partly covered "
+            "by a self-assembled monolayer: speeds of the shafts, forces, gaps and transmission errors of the meshes "
+            "and loads of the hubs at uniform times, and every contact event."
+        )
+    elif scene.roller is None:
         what = (
             "Simulated motion of a pair of micro gears whose rough teeth adhere to each other and are partly "
             "covered by a self-assembled monolayer: speeds, transmission error, gaps and contact torque at "

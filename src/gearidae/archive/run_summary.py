@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from gearidae.archive.select import is_roller, scene_of
 from gearidae.archive.totals import balance_of, extremes_of
+from gearidae.archive.train.variables import is_train
 from gearidae.archive.variables import ENERGY_BALANCE
 from gearidae.arrays import Floats
 from gearidae.records import EnergyBalance, EventKind, Extremes
@@ -92,14 +93,20 @@ def summary_of(ds: xr.Dataset) -> RunSummary | None:
     Returns
     -------
     RunSummary or None
-        None for a roller, and for a sweep.
+        None for a roller, for a train of several meshes, and for a sweep.
 
     Raises
     ------
     SceneError
         If the dataset carries no scene.
     """
-    if is_roller(ds) or "event" not in ds.dims or "gear_speed" not in ds or ds["gear_speed"].ndim != 1:
+    if (
+        is_train(ds)
+        or is_roller(ds)
+        or "event" not in ds.dims
+        or "gear_speed" not in ds
+        or ds["gear_speed"].ndim != 1
+    ):
         return None
     incidents = _Events(GearScene.from_dict(scene_of(ds)), float(ds.attrs.get("start_time", 0.0)))
     for piece in _pieces(ds, "event", ("event_time", "event_kind", "event_pair", "event_flank")):

@@ -13,6 +13,7 @@ import xarray as xr
 
 from gearidae.archive.rows import own_rows
 from gearidae.archive.select import swept_dims
+from gearidae.archive.train.variables import is_train
 from gearidae.archive.variables import ROW_VARIABLES
 from gearidae.errors import SceneError
 from gearidae.records import Impacts, Rows
@@ -53,7 +54,10 @@ def time_series(
             raise SceneError("variables", name, f"must be sampled: {', '.join(sampled) or 'nothing is'}")
     dims = swept_dims(ds)
     shape = tuple(ds.sizes[dim] for dim in dims)
-    rows, columns = math.prod(shape) * ds.sizes.get("time", 0), 1 + len(dims) + len(wanted)
+    rows = math.prod(shape) * ds.sizes.get("time", 0)
+    columns = (
+        1 + len(dims) + sum(math.prod(ds.sizes[dim] for dim in _parts(ds[name], dims)) for name in wanted)
+    )
     if 8 * rows * columns > largest:
         raise SceneError(
             "to_dataframe",
@@ -65,8 +69,27 @@ def time_series(
         return pd.DataFrame(index=pd.Index([], dtype=np.float64, name="time"))
     time = pd.Index(np.tile(ds["time"].values, math.prod(shape)), name="time")
     labels = {name: np.repeat(values, ds.sizes["time"]) for name, values in run_labels(ds, dims).items()}
-    values = {name: ds[name].transpose(*dims, "time").values.ravel() for name in wanted}
+    values: dict[str, Any] = {}
+    for name in wanted:
+        values |= _columns_of(ds[name], dims)
     return pd.DataFrame({**labels, **values}, index=time)
+
+
+def _parts(variable: xr.DataArray, dims: tuple[str, ...]) -> list[str]:
+    """Dimensions of a sampled variable besides time and those of runs: the shafts or the meshes of a train."""
+    return [str(dim) for dim in variable.dims if dim != "time" and dim not in dims]
+
+
+def _columns_of(variable: xr.DataArray, dims: tuple[str, ...]) -> dict[str, Any]:
+    """Columns of a sampled variable: one, or one for each shaft or mesh."""
+    parts = _parts(variable, dims)
+    if not parts:
+        return {str(variable.name): variable.transpose(*dims, "time").values.ravel()}
+    (part,) = parts
+    return {
+        f"{variable.name}[{label}]": variable.isel({part: number}).transpose(*dims, "time").values.ravel()
+        for number, label in enumerate(variable[part].values.tolist())
+    }
 
 
 def row_table(ds: xr.Dataset, kind: type[Rows]) -> pd.DataFrame:
@@ -102,6 +125,9 @@ def row_table(ds: xr.Dataset, kind: type[Rows]) -> pd.DataFrame:
         flags = known[name].flags if name in known else None
         values = ds[name].values
         columns.setdefault(name.removeprefix(prefix), _in_words(values, flags) if flags else values)
+    for part in ("mesh", "shaft") if is_train(ds) else ():
+        names = ds[part].values.tolist()
+        columns[part] = pd.Categorical.from_codes(columns[part], categories=names)
     return pd.DataFrame(columns)
 
 

@@ -112,13 +112,13 @@ class TrainRelease:
         """Yield the exits until all meshes have had theirs and phases repeat."""
         meshes = self._train.meshes
         # pitches of each mesh in a turn of the drive
-        paces = [
-            mesh.geometry.gear_teeth * self._train.shafts[mesh.b].ratio for mesh in meshes
-        ]
+        paces = [mesh.geometry.gear_teeth * self._train.shafts[mesh.b].ratio for mesh in meshes]
         turns = self._impacts / min(paces) + 1 / reduce(_common_divisor, paces)
         for k, mesh in enumerate(meshes):
             speed, pitch = self._speed(k), mesh.geometry.base_pitch
-            first = (mesh.geometry.path_length / pitch - mesh.phase) % 1.0  # the exit of the next pair that leaves
+            first = (
+                mesh.geometry.path_length / pitch - mesh.phase
+            ) % 1.0  # the exit of the next pair that leaves
             width = float(self._pairs[k].places[-1]) / speed
             for number in range(min(math.ceil(turns * paces[k]), _MOST_EXITS)):
                 begin = (first + number) * pitch / speed
@@ -212,8 +212,9 @@ class TrainRelease:
             carried = starting_torque(self._scene, near)[1]
             for k in self._beside:
                 forces[k], held[k] = carried[k], hold(k, carried[k])
-        for k in (*self._path, None):
-            shaft = train.load if k is None else train.meshes[k].a
+        for step in range(len(self._path) + 1):
+            last = step == len(self._path)
+            shaft = train.load if last else train.meshes[self._path[step]].a
             hub, ratio = self._hubs[shaft], float(train.shafts[shaft].ratio)
             arm, left, pushed = 0.0 if hub is None else hub.arm, arriving - self._needs[shaft], before
             for side in self._beside:
@@ -221,8 +222,9 @@ class TrainRelease:
                     left -= train.meshes[side].geometry.base_radius_pinion * forces[side]
                     pushed = pushed - forces[side] * self._lines[side]
             missing = ratio * (arm * math.hypot(*pushed) - left)
-            if k is None:
-                return _Passed(float(missing), forces, held)
+            if last:
+                break
+            k = self._path[step]
             mesh = train.meshes[k]
             radius = mesh.geometry.base_radius_pinion
             if missing > 0.0:
@@ -233,7 +235,7 @@ class TrainRelease:
             held[k] = hold(k, float(forces[k]))
             arriving = mesh.geometry.base_radius_gear * (forces[k] - held[k])
             before = forces[k] * self._lines[k]
-        raise AssertionError("the load's shaft comes last")
+        return _Passed(float(missing), forces, held)
 
 
 def _common_divisor(one: Fraction, other: Fraction) -> Fraction:

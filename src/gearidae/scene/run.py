@@ -110,6 +110,9 @@ class Run(Group):
     stop: Annotated[str, BeforeValidator(_read_stop)] = Field(
         default="time", description="what ends the run before its time: sticks, or turns N of the gear"
     )
+    judged: str | None = Field(
+        default=None, description="shaft of a train by which a run is judged; default that of the load"
+    )
     checkpoints: Annotated[tuple[Time, ...], BeforeValidator(_read_times)] = Field(
         default=(), description="times at which the solver starts afresh and keeps a checkpoint"
     )

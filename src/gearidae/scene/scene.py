@@ -17,6 +17,7 @@ from gearidae.scene.friction import check_friction, check_no_friction
 from gearidae.scene.gears import Gears, Mesh
 from gearidae.scene.group import Group, shorten
 from gearidae.scene.joints import check_joints
+from gearidae.scene.judged import judged_shaft, refuse_judged
 from gearidae.scene.keys import INSTEAD, KeyInfo, find_key, keys_of, put
 from gearidae.scene.limits import (
     check_gaps,
@@ -369,6 +370,7 @@ class GearScene(Scene):
         for key, name in (("drive", self.drive.shaft), ("load", self.load.shaft)):
             if name is not None:
                 raise SceneError(f"{key}.shaft", name, "is of a train: pinion and gear have drive and load")
+        refuse_judged(self)
         gears, mesh, geometry = self.gears, self.mesh, self.geometry
         if mesh.backlash >= geometry.base_pitch / 2:
             allowed = f"must be below half a base pitch, {geometry.base_pitch / 2:.4g} m"
@@ -454,6 +456,7 @@ class TrainScene(Scene):
         if self.roller is not None:
             raise SceneError("shafts", "(given)", "a scene has a roller or shafts, not both")
         check_train(self)
+        judged_shaft(self)
 
     def pair(self, name: str) -> GearScene:
         """Return one mesh as a pair of gears, with its own tables, and what drives and loads the pair's two shafts.
@@ -492,6 +495,7 @@ class RollerScene(Scene):
                 raise SceneError(table, "(given)", allowed)
         if self.run.stop != "time":
             raise SceneError("run.stop", self.run.stop, "must be time in a scene with a roller")
+        refuse_judged(self)
         if self.run.exposures != 0:
             raise SceneError("run.exposures", self.run.exposures, "must be 0 in a scene with a roller")
         check_population(self)

@@ -49,7 +49,7 @@ def pair_of(scene: TrainScene, name: str) -> GearScene:
             surface=mesh.surface,
             coating=mesh.coating,
             contact=scene.contact,
-            run=scene.run,
+            run=scene.run.model_copy(update={"judged": None}),
         )
     except SceneError as error:
         key = _train_key(mesh, error.key, [*scene.shafts])

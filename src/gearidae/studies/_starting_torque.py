@@ -63,8 +63,8 @@ def static_starting_torque(scene: Scene, *, impacts: int = 3, lowest: float | No
     scene : Scene
         With gears, or a train without loops.
     impacts : int, optional
-        Mesh exits that have to be passed, of each mesh of a train. A worn contact is pressed deeper by each one, and needs more torque the
-        more there are.
+        Mesh exits that have to be passed, of each mesh of a train. A worn contact is pressed deeper
+        by each one, and needs more torque the more there are.
     lowest : float, optional
         Torque below which nothing is looked for, beyond what dry resistance and joints take [N m]; by default a
         thousandth of the scene's.
@@ -72,11 +72,11 @@ def static_starting_torque(scene: Scene, *, impacts: int = 3, lowest: float | No
     Returns
     -------
     float
-        Torque on the pinion, or on the shaft of a train's drive [N m] (`gearidae.runs.train_release`): the M10 at which ``M10/R1 = max(-s' W_l) + M20/R2`` holds at the worst exit, see
+        Torque on the pinion [N m]: the M10 at which ``M10/R1 = max(-s' W_l) + M20/R2`` holds at the worst exit, see
         `gearidae.runs.release`; with friction, ``M10 = i (R2 max(-s' W_l) + M20 + m2) + m1`` of
-        `gearidae.studies.starting_parts`, friction of the flanks being that under the scene's own torque. What
-        the dry resistance and the joints take (0 without any) if adhesion does not hold the gear even at the lowest
-        torque; infinite if it does at any.
+        `gearidae.studies.starting_parts`, friction of the flanks being that under the scene's own torque. Of a train on
+        the shaft of the drive, see `gearidae.runs.train_release`. What dry resistance and joints take (0 without
+        any) if adhesion does not hold the gear even at the lowest torque; infinite if it does at any.
 
     Raises
     ------
@@ -114,8 +114,8 @@ def starting_torque(
     Parameters
     ----------
     scene : Scene
-        With gears, or a train. Its constant drive torque is replaced, a schedule of the drive taken away, its initial speed set to
-        zero.
+        With gears, or a train. Its constant drive torque is replaced, a schedule of the drive taken away, its initial
+        speed set to zero.
     sam_fraction : array_like or 'own', optional
         Fractions of the coating; by default 13 from 1 to 0.4. ``own`` stands for the scene's own coating as it is, and
         is the default of a population.

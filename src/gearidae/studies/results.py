@@ -225,6 +225,45 @@ class Results:
         """
         return time_series(self._ds, variables, largest=largest)
 
+    def train(self) -> xr.Dataset:
+        """Return a run of gears along ``shaft`` and ``mesh``, whatever the form of its scene.
+
+        Returns
+        -------
+        xarray.Dataset
+            A run of a train as it is; that of a pair with the shafts ``pinion`` and ``gear`` and the mesh ``mesh``.
+
+        Raises
+        ------
+        SceneError
+            If it is a run of a roller.
+        """
+        from gearidae.archive.train import train_form
+
+        return train_form(self._ds)
+
+    def work(self) -> pd.DataFrame:
+        """Make a table of where the work of the drive goes in a run of a train.
+
+        Returns
+        -------
+        pandas.DataFrame
+            By ``name``, from the drive to the load (``mesh first``, ``hub of middle``, ``load``, ``kinetic energy``):
+            ``energy`` [J] and its ``share`` of the drive's work. The shares add up to 1.
+
+        Raises
+        ------
+        SceneError
+            If it is no single run of a train of several meshes.
+        """
+        import pandas as pd
+
+        from gearidae.archive.train import work_shares
+
+        rows = work_shares(self._ds)
+        table = {name: [getattr(row, name) for row in rows] for name in ("energy", "share")}
+        return pd.DataFrame(table, index=pd.Index([row.name for row in rows], name="name"))
+
     def events(self) -> pd.DataFrame:
         """Make a table of the events of these runs; see `gearidae.archive.tables.row_table`."""
         return row_table(self._ds, Events)

@@ -28,7 +28,8 @@ def headline(ds: xr.Dataset) -> str:
     judged = outcomes(ds)
     subject = "roller" if isinstance(judged[0], RollerOutcome) else "gear"
     if len(judged) == 1:
-        return f"The {subject} {judged[0].words}."
+        name = judged[0].shaft if isinstance(judged[0], GearOutcome) else ""
+        return f"{name or f'The {subject}'} {judged[0].words}."
     counts = Counter(outcome.verdict for outcome in judged)
     counted = ", ".join(f"{verdict} {count}" for verdict, count in counts.most_common())
     return f"{len(judged)} runs: {counted}.{_limit(ds, subject, judged)}"

@@ -19,6 +19,7 @@ from gearidae.archive.pieces import count, pieces
 from gearidae.archive.select import is_roller, refuse_other_labels, run_value, runs, scene_of, swept_dims
 from gearidae.archive.tables import run_labels
 from gearidae.archive.totals import extremes_of, imbalance, imbalance_of, imbalance_words
+from gearidae.archive.train import judged_view
 from gearidae.errors import SceneError
 from gearidae.records import RUN_PARTS, EventKind, Extremes
 from gearidae.records.standing import Holding
@@ -84,6 +85,10 @@ class GearOutcome(Shown):
         Pitches that the gear has been away from where it stands; NaN if unknown.
     settled : int
         1 if free gears have settled there, within a pitch, 2 if the gear has with them.
+    shaft : str
+        The judged shaft of a train; empty of a pair.
+    holders : str
+        What holds a train, by the names of its shafts and meshes.
     """
 
     label: dict[str, Any]
@@ -106,11 +111,13 @@ class GearOutcome(Shown):
     reached: float = math.nan
     advance: float = math.nan
     settled: int = 0
+    shaft: str = ""
+    holders: str = ""
 
     @property
     def held_by(self) -> str:
         """Names of what holds a gear that stands; `holding` has them for counting, `Holding.by_adhesion` among them."""
-        return self.holding.words
+        return self.holders or self.holding.words
 
     def resolved_min_speed(self, rtol: float) -> float:
         """Smallest speed [rad/s]; 0 where that is less than a relative tolerance resolves beside the largest."""
@@ -145,7 +152,7 @@ class GearOutcome(Shown):
     def _standing_in_words(self, exits: str) -> str:
         """Say since when the gear stands and what free gears would have done, or what holds it."""
         free = f"free gears would have turned on by {self.free_advance:.3g} pitches"
-        held = f", held by {self.holding.words}" if self.holding else ""
+        held = f", held by {self.held_by}" if self.held_by else ""
         since = f"{_seconds(self.stick_time)} ({exits})" if self.stick_time > 0.0 else ""
         if self.verdict == "sticks":
             words = f"sticks at {since}" if since else f"does not start in {self._window}"
@@ -255,6 +262,7 @@ def outcomes(ds: xr.Dataset) -> list[GearOutcome | RollerOutcome]:
 
 
 def _gear(label: dict[str, Any], run: xr.Dataset) -> GearOutcome:
+    run = judged_view(run)
     status, scene = str(run_value(run, "status")), scene_of(run)
     extremes, scheduled = extremes_of(run), is_scheduled(scene)
     verdict, old = None, False
@@ -285,6 +293,8 @@ def _gear(label: dict[str, Any], run: xr.Dataset) -> GearOutcome:
         reached=kept.followed_time,
         advance=kept.advance,
         settled=int(kept.settled),
+        shaft=run.attrs.get("judged_shaft", ""),
+        holders=str(run.attrs.get("held_by", "")),
     )
 
 

@@ -1,0 +1,306 @@
+"""What a run of a train did, of its judged shaft: extremes as those of a pair, and what holds it by name.
+
+The engine follows intervals at rest and extremes of the speed at its own steps; how the speed changes, and zeros
+without a rest, are those of the samples.
+"""
+
+from __future__ import annotations
+
+import math
+from array import array
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import numpy as np
+
+from gearidae.analysis.verdict.free_train import FreeTrain
+from gearidae.archive.train.work import MESH_LOSSES
+from gearidae.arrays import Floats
+from gearidae.records import RUN_PARTS, EventKind, Extremes
+from gearidae.records.standing import HALF_PITCH, SETTLED_WITHIN, Holding, stands
+from gearidae.scene.judged import judged_mesh, judged_shaft
+
+if TYPE_CHECKING:
+    from gearidae.records.train_results import TrainSolution
+    from gearidae.scene import TrainScene
+
+_LOOKS: Final = 500
+"""Times of a standstill at which the drive is compared with the dry resistance."""
+_NOT_PASSED_ON: Final = 0.01
+"""Share of the torque at a shaft that must be missing behind a mesh for its adhesion to have a part."""
+
+
+class Judged(NamedTuple):
+    """The extremes of the judged shaft, and names of all that holds it: ``hub friction of middle``."""
+
+    extremes: Extremes
+    held_by: tuple[str, ...]
+
+
+class _Standstill(NamedTuple):
+    """Numbers of a standstill, in the order of `gearidae.records.standing.COLUMNS`."""
+
+    begin: float
+    end: float
+    advance: float
+    free_advance: float
+    held_torque: float
+    holding: int
+    driven_time: float
+    rest_time: float
+    settled: int
+
+
+class _Motion:
+    """The judged shaft over time, in pitches of its driven gear."""
+
+    def __init__(self, scene: TrainScene, solution: TrainSolution) -> None:
+        self.shaft, self.mesh = judged_shaft(scene), judged_mesh(scene)
+        geometry = scene.train.meshes[self.mesh].geometry
+        driven = scene.train.meshes[self.mesh].b == self.shaft
+        self.pitch = 2.0 * math.pi / (geometry.gear_teeth if driven else geometry.pinion_teeth)
+        self.time, self.begin, self.end = solution.time, solution.start, solution.reached
+        self.speed = solution.samples["shaft_speed"][self.shaft]
+        self.angle = solution.samples["shaft_angle"][self.shaft]
+        rests = solution.rests
+        mine = np.flatnonzero(rests["shaft"] == self.shaft)
+        self.rests = [(float(rests["begin"][k]), float(rests["end"][k])) for k in mine]
+
+    def at(self, t: float) -> float:
+        """Angle at a time [rad]."""
+        return float(np.interp(t, self.time, self.angle))
+
+    def zeros(self) -> list[float]:
+        """Times at which the speed is zero, or begins to be [s]."""
+        signs = np.sign(self.speed)
+        found = [begin for begin, _ in self.rests]
+        if signs.size and signs[0] == 0.0:
+            found.append(float(self.time[0]))
+        for k in np.flatnonzero(signs[:-1] * signs[1:] < 0.0):
+            share = self.speed[k] / (self.speed[k] - self.speed[k + 1])
+            found.append(float(self.time[k] + share * (self.time[k + 1] - self.time[k])))
+        return sorted(set(found))
+
+
+def judge_train(scene: TrainScene, solution: TrainSolution) -> Judged:
+    """Judge a run of a train by its judged shaft.
+
+    Parameters
+    ----------
+    scene : Scene
+        As it was run.
+    solution : TrainSolution
+        With samples.
+
+    Returns
+    -------
+    Judged
+    """
+    motion = _Motion(scene, solution)
+    exits = _exits(solution, motion)
+    numbers: dict[str, float] = {
+        "min_gear_speed": float(solution.shaft_totals["min_speed"][motion.shaft]),
+        "max_gear_speed": float(solution.shaft_totals["max_speed"][motion.shaft]),
+        "mesh_exits": float(solution.mesh_totals["mesh_exits"][motion.mesh]),
+        "rest_time": float(solution.shaft_totals["rest_time"][motion.shaft]),
+        "followed_time": motion.end,
+        "stick_exits": len(exits),
+        **_speeds(motion),
+    }
+    if motion.time.size < 2:
+        return Judged(Extremes(numbers), ())
+    free = FreeTrain(scene)
+    numbers |= _back(motion, free)
+    standstills = list(_standstills(motion, free))
+    ended = [still.end for still in standstills if not math.isnan(still.end)]
+    started = ended[-1] if ended else 0.0 if not standstills else math.nan
+    numbers |= {
+        "standstills": len(standstills),
+        "standing_time": sum((motion.end if math.isnan(s.end) else s.end) - s.begin for s in standstills),
+        "standing_rest_time": sum(still.rest_time for still in standstills),
+        "start_time": started,
+    }
+    if ended:
+        torque = solution.samples["drive_torque"]
+        numbers["breakaway_torque"] = float(np.interp(started, motion.time, torque))
+    held: tuple[str, ...] = ()
+    if standstills and math.isnan(standstills[-1].end):
+        still = standstills[-1]
+        holding, held = _holders(scene, solution, free, motion, still.free_advance)
+        standstills[-1] = still._replace(holding=int(holding))
+        numbers |= {
+            "stick_time": still.begin,
+            "stick_exits": int(np.count_nonzero(exits <= still.begin)),
+            "holding": int(holding),
+            "settled": int(still.settled),
+            **{
+                name: getattr(still, name)
+                for name in ("advance", "free_advance", "driven_time", "held_torque")
+            },
+        }
+    elif numbers["turned_back"] > 0.0:
+        numbers["stick_exits"] = int(np.count_nonzero(exits <= numbers["back_time"]))
+    table = array("d", [float(number) for still in standstills for number in still])
+    return Judged(Extremes(numbers, standstill_list=table), held)
+
+
+def _exits(solution: TrainSolution, motion: _Motion) -> Floats:
+    events = solution.events
+    own = (events["mesh"] == motion.mesh) & (events["kind"] == EventKind.MESH_EXIT)
+    return np.asarray(events["time"][own])
+
+
+def _speeds(motion: _Motion) -> dict[str, float]:
+    """How the speed changed after the start-up, in the second half, and in the last twentieth of the run."""
+    if not motion.time.size:
+        return {}
+    share = (motion.time - motion.begin) / max(motion.end - motion.begin, 1e-300)
+    settled, late, last = (motion.speed[share >= part] for part in RUN_PARTS)
+    made = {"final_speed": float(motion.speed[-1])}
+    if settled.size:
+        made |= {
+            "settled_gear_speed": float(settled.mean()),
+            "settled_spread": float(np.ptp(settled)),
+            "speed_fall": float((np.maximum.accumulate(settled) - settled).max()),
+            "speed_rise": float((settled - np.minimum.accumulate(settled)).max()),
+        }
+    if late.size:
+        made |= {"late_gear_speed": float(late.mean()), "late_spread": float(np.ptp(late))}
+    if last.size:
+        made["last_min_gear_speed"] = float(last.min())
+    return made
+
+
+def _standstills(motion: _Motion, free: FreeTrain) -> Iterator[_Standstill]:
+    """Yield the standstills of the shaft in the order of time; the end of one that lasts is NaN.
+
+    A zero of the speed that is no standstill is followed by others of the same rocking: the next that counts is one
+    after a new farthest position.
+    """
+    until, low, high = -math.inf, math.inf, -math.inf
+    for zero in motion.zeros():
+        place = motion.at(zero)
+        if zero < until or low < place < high:
+            continue
+        inside = np.flatnonzero(motion.time >= zero)
+        away = np.abs(motion.angle[inside] - place) / motion.pitch
+        left = np.flatnonzero(away >= HALF_PITCH)
+        lasts = left.size == 0
+        inside = inside if lasts else inside[: left[0]]
+        end = motion.end if lasts else float(motion.time[inside[-1]]) if inside.size else zero
+        still = _judged(motion, free, zero, end, inside)
+        if still is None:
+            low, high = min(low, place), max(high, place)
+            continue
+        if not lasts:
+            slips = [slip for _, slip in motion.rests if zero < slip <= end]
+            still = still._replace(end=slips[-1] if slips else end)
+        yield still
+        until, low, high = end, math.inf, -math.inf
+
+
+def _judged(motion: _Motion, free: FreeTrain, zero: float, end: float, inside: Any) -> _Standstill | None:
+    """Judge the time from a zero to an end, in which the shaft has stayed within half a pitch; None if it moves."""
+    place = motion.at(zero)
+    times = np.union1d(motion.time[inside], [end])
+    away = np.abs(np.interp(times, motion.time, motion.angle) - place) / motion.pitch
+    advance = float(away.max())
+    drifted = np.abs(free.positions(zero, place, times) - place) / motion.pitch
+    ahead, half = float(drifted.max()), times <= 0.5 * (zero + end)
+    calm = 0.0 < ahead <= SETTLED_WITHIN and half.any() and ahead <= float(drifted[half].max())
+    together = bool(calm and advance <= float(away[half].max()))
+    if not stands(advance, ahead, end - zero, end, together):
+        return None
+    looks = np.linspace(zero, end, _LOOKS)
+    beyond = np.array([abs(free.driving(t, place, 0.0)) - free.dry(t, place, 0.0) for t in looks])
+    rest = sum(max(min(stop, end) - max(start, zero), 0.0) for start, stop in motion.rests)
+    return _Standstill(
+        begin=zero,
+        end=math.nan,
+        advance=advance,
+        free_advance=ahead,
+        held_torque=max(float(beyond.max()), 0.0),
+        holding=0,
+        driven_time=float(np.mean(beyond > 0.0)) * (end - zero),
+        rest_time=rest,
+        settled=int(calm) + int(together),
+    )
+
+
+def _back(motion: _Motion, free: FreeTrain) -> dict[str, float]:
+    """By how far the shaft has gone back at the end, and free gears from the same zero."""
+    nothing = {"turned_back": 0.0, "free_turned_back": 0.0, "back_time": math.nan}
+    places = motion.angle / motion.pitch
+    top, low, forward, turned = 0, 0, True, 0
+    for k, place in enumerate(places):
+        if forward:
+            top = k if place > places[top] else top
+            if places[top] - place > HALF_PITCH:
+                forward, low, turned = False, k, top
+        else:
+            low = k if place < places[low] else low
+            if place - places[low] > HALF_PITCH:
+                forward, top = True, k
+    if forward:
+        return nothing
+    since = float(motion.time[turned])
+    drifted = free.positions(since, float(motion.angle[turned]), motion.time[turned:]) / motion.pitch
+    return {
+        "turned_back": float(places[turned] - places[-1]),
+        "free_turned_back": max(float(places[turned] - drifted[-1]), 0.0),
+        "back_time": since,
+    }
+
+
+def _holders(
+    scene: TrainScene, solution: TrainSolution, free: FreeTrain, motion: _Motion, free_advance: float
+) -> tuple[Holding, tuple[str, ...]]:
+    """What holds a train that stands: dry resistances alone where they suffice, else hubs that rest, and adhesion."""
+    train, held, holding = scene.train, [], Holding(0)
+    names = list(scene.shafts)
+    if free_advance == 0.0:
+        if free.dry(motion.end, motion.angle[-1], 0.0) > 0.0:
+            holding |= Holding.DRY_RESISTANCE
+        if scene.load.is_dry:
+            held.append(f"dry load of {names[train.load]}")
+        held += [
+            f"dry resistance of {name}" for name, shaft in scene.shafts.items() if shaft.resistance > 0.0
+        ]
+        return holding, tuple(held)
+    at_rest = {
+        int(shaft)
+        for shaft, end in zip(solution.rests["shaft"], solution.rests["end"], strict=True)
+        if end >= motion.end
+    }
+    for number, (name, shaft) in enumerate(scene.shafts.items()):
+        if number in at_rest and shaft.hub is not None and shaft.hub.torque(1.0) > 0.0:
+            holding |= Holding.HUB_FRICTION
+            held.append(f"hub friction of {name}")
+    for name in _adhering(scene, solution):
+        holding |= Holding.ADHESION
+        held.append(f"adhesion in {name}")
+    return holding, tuple(held)
+
+
+def _adhering(scene: TrainScene, solution: TrainSolution) -> list[str]:
+    """Names of the meshes behind which torque is missing that no friction of the driven shaft can hold."""
+    train = scene.train
+    late = solution.time >= solution.start + RUN_PARTS[2] * (solution.reached - solution.start)
+    forces = solution.samples["mesh_force"][:, late].mean(axis=1)
+    loads = solution.samples["hub_load"][:, late].mean(axis=1)
+    missing = []
+    for number, (name, shaft) in enumerate(scene.shafts.items()):
+        mine = [k for k, mesh in enumerate(train.meshes) if mesh.b == number]
+        if not mine or not any(solution.mesh_totals[MESH_LOSSES[0]][k] > 0.0 for k in mine):
+            continue
+        arrives = sum(train.meshes[k].geometry.base_radius_gear * forces[k] for k in mine)
+        leaves = sum(
+            mesh.geometry.base_radius_pinion * forces[k]
+            for k, mesh in enumerate(train.meshes)
+            if mesh.a == number
+        )
+        limit = shaft.resistance + (0.0 if shaft.hub is None else shaft.hub.torque(float(loads[number])))
+        limit += scene.load.torque if name == train.shafts[train.load].name else 0.0
+        if arrives - leaves - limit > _NOT_PASSED_ON * abs(arrives):
+            missing += [train.meshes[k].name for k in mine]
+    return missing

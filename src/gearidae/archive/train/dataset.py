@@ -1,0 +1,158 @@
+"""From what the engine hands up of a train to one labelled dataset."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Hashable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from gearidae.archive.dataset import statistics_attributes
+from gearidae.archive.end_state import end_state_attributes
+from gearidae.archive.provenance import provenance
+from gearidae.archive.totals import standstills_as_text
+from gearidae.archive.train.variables import (
+    COORDINATES,
+    EFFICIENCIES,
+    ENERGY,
+    EVENT_PLACES,
+    MESH_TOTALS,
+    REST_LIST,
+    SHAFT_TOTALS,
+    TRAIN_SAMPLES,
+)
+from gearidae.archive.train.work import efficiencies
+from gearidae.archive.variables import (
+    ENERGY_TOTALS,
+    EVENTS,
+    EXTREMES,
+    OF_SWEPT_RUN,
+    SAM_FRACTION,
+    SAMPLES,
+    STANDSTILL_LIST,
+    TIME,
+)
+from gearidae.scene.judged import judged_mesh, judged_shaft
+
+if TYPE_CHECKING:
+    from gearidae.records import Extremes
+    from gearidae.records.train_results import TrainSolution
+    from gearidae.scene import TrainScene
+
+_OF_JUDGED = tuple(name for name in EXTREMES if name not in {*MESH_TOTALS, *SHAFT_TOTALS, "min_separation"})
+
+
+def train_dataset(
+    scene: TrainScene, solution: TrainSolution, extremes: Extremes, held_by: Sequence[str] = ()
+) -> xr.Dataset:
+    """Label one run of a train.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene exactly as it was run.
+    solution : TrainSolution
+        What the engine handed up.
+    extremes : Extremes
+        Of the judged shaft.
+    held_by : sequence of str, optional
+        What holds it, by names.
+
+    Returns
+    -------
+    xarray.Dataset
+        Samples along ``shaft``, ``mesh`` and ``time``; those of the two shafts that a pair has, ``gear_`` for the
+        judged one and ``pinion_`` for that of the drive, along ``time``; totals along ``shaft`` and ``mesh``; energies
+        and extremes of the judged shaft without a dimension; events with their mesh and shaft. Everything in SI units.
+    """
+    variables: dict[Hashable, Any] = {
+        name: (variable.dims, solution.samples[name], variable.attributes)
+        for name, variable in TRAIN_SAMPLES.items()
+    }
+    variables |= _two_shafts(scene, solution)
+    variables |= _events(scene, solution)
+    for catalogue, totals in ((SHAFT_TOTALS, solution.shaft_totals), (MESH_TOTALS, solution.mesh_totals)):
+        for name, variable in catalogue.items():
+            values = np.asarray(totals[name]).astype(variable.dtype)
+            variables[name] = (variable.dims, values, variable.attributes)
+    for name, variable in ENERGY.items():
+        variables[name] = ((), solution.energy[name], variable.attributes)
+    for name, values in efficiencies(scene, solution).items():
+        known = EFFICIENCIES.get(name, ENERGY_TOTALS.get(name))
+        assert known is not None
+        variables[name] = (known.dims, values, known.attributes)
+    for name in _OF_JUDGED:
+        variables[name] = ((), np.asarray(extremes[name], EXTREMES[name].dtype), EXTREMES[name].attributes)
+    variables[STANDSTILL_LIST.name] = ((), standstills_as_text(extremes), STANDSTILL_LIST.attributes)
+    variables[REST_LIST.name] = ((), _rests(solution), REST_LIST.attributes)
+    variables["reached"] = ((), solution.reached, OF_SWEPT_RUN["reached"].attributes)
+    return xr.Dataset(
+        variables,
+        coords={
+            "time": ("time", solution.time, TIME.attributes),
+            "sam_fraction": ((), scene.coating.sam_fraction, SAM_FRACTION.attributes),
+            **_coordinates(scene),
+        },
+        attrs={
+            **provenance(scene, f"simulated {solution.reached:g} s"),
+            "status": solution.status,
+            "message": solution.message,
+            **statistics_attributes([solution.statistics]),
+            "contact_bodies": "rigid",
+            "contact_bodies_reason": "of several meshes",
+            "contact_roughness": scene.contact.roughness,
+            "judged_shaft": scene.train.shafts[judged_shaft(scene)].name,
+            "judged_mesh": scene.train.meshes[judged_mesh(scene)].name,
+            "drive_shaft": scene.train.shafts[scene.train.drive].name,
+            **({"held_by": ", ".join(held_by)} if held_by else {}),
+            **end_state_attributes(solution.start, solution.checkpoint),
+            "t_end": solution.start + scene.run.duration,
+        },
+    )
+
+
+def _coordinates(scene: TrainScene) -> dict[str, Any]:
+    train, judged = scene.train, scene.train.shafts[judged_shaft(scene)].ratio
+    values: dict[str, list[Any]] = {
+        "shaft": [shaft.name for shaft in train.shafts],
+        "mesh": [mesh.name for mesh in train.meshes],
+        "mesh_driver": [mesh.driver for mesh in train.meshes],
+        "mesh_driven": [mesh.driven for mesh in train.meshes],
+        "mesh_ratio": [float(mesh.ratio) for mesh in train.meshes],
+        "shaft_sense": [shaft.sense for shaft in train.shafts],
+        "shaft_ratio": [float(shaft.ratio / judged) for shaft in train.shafts],
+    }
+    return {
+        name: (variable.dims, np.array(values[name], dtype=variable.dtype), variable.attributes)
+        for name, variable in COORDINATES.items()
+    }
+
+
+def _two_shafts(scene: TrainScene, solution: TrainSolution) -> dict[Hashable, Any]:
+    """Samples by the names that a pair has: of the judged shaft, and of the drive's."""
+    made: dict[Hashable, Any] = {}
+    for side, number in (("gear", judged_shaft(scene)), ("pinion", scene.train.drive)):
+        for name, source in (("speed", "shaft_speed"), ("angle", "shaft_angle"), ("hub_load", "hub_load")):
+            variable = SAMPLES[f"{side}_{name}"]
+            made[variable.name] = (("time",), solution.samples[source][number], variable.attributes)
+    return made
+
+
+def _events(scene: TrainScene, solution: TrainSolution) -> dict[Hashable, Any]:
+    """Events, with the mesh and the shaft of each."""
+    events = solution.events
+    count = len(events["time"])
+    columns = {f"event_{name}": values for name, values in events.items()}
+    columns["event_sam_fraction"] = np.full(count, scene.coating.sam_fraction)
+    return {
+        name: (("event",), np.asarray(columns[name]).astype(variable.dtype), variable.attributes)
+        for name, variable in {**EVENTS, **EVENT_PLACES}.items()
+    }
+
+
+def _rests(solution: TrainSolution) -> str:
+    rests = solution.rests
+    rows = zip(rests["shaft"], rests["begin"], rests["end"], strict=True)
+    return json.dumps([[solution.shafts[int(shaft)], float(begin), float(end)] for shaft, begin, end in rows])

@@ -1,0 +1,105 @@
+"""A run of a train as its judged pair, for readers of pairs; and any run of gears along shafts and meshes."""
+
+from __future__ import annotations
+
+import xarray as xr
+
+from gearidae.archive.select import run_scene
+from gearidae.archive.train.variables import COORDINATES, MESH_TOTALS, SHAFT_TOTALS, TRAIN_SAMPLES, is_train
+from gearidae.archive.train.work import MESH_LOSSES
+from gearidae.archive.variables import ENERGY_BALANCE
+from gearidae.errors import SceneError
+from gearidae.scene import GearScene
+
+_OF_SHAFTS = {
+    "shaft_speed": ("pinion_speed", "gear_speed"),
+    "shaft_angle": ("pinion_angle", "gear_angle"),
+    "hub_load": ("pinion_hub_load", "gear_hub_load"),
+    "hub_loss": ("pinion_hub_loss", "gear_hub_loss"),
+    "hub_sliding": ("pinion_hub_sliding", "gear_hub_sliding"),
+}
+"""Variables along the shafts, and those of a pair that they are made of."""
+_OF_MESHES = (
+    *("mesh_force", "transmission_error", "drive_gap", "coast_gap", "pairs_in_contact"),
+    *MESH_TOTALS,
+)
+
+
+def judged_view(ds: xr.Dataset) -> xr.Dataset:
+    """Return a run of a train as that of a pair: the shaft that is judged, the mesh that drives it, the drive.
+
+    Anything else is returned as it is. Losses are those of the whole train, so that the energy balance is whole.
+    """
+    if not is_train(ds):
+        return ds
+    losses = {name: ds[name].sum("mesh", keep_attrs=True) for name in MESH_LOSSES if name in ds}
+    hubs, drags = ds.get("hub_loss"), ds.get("drag_loss")
+    mesh = ds["mesh"].values.tolist().index(ds.attrs["judged_mesh"])
+    shaft = ds["shaft"].values.tolist().index(ds.attrs["judged_shaft"])
+    view = ds.isel(mesh=mesh, shaft=shaft).drop_vars([name for name in COORDINATES if name in ds.variables])
+    view = view.assign(losses)
+    if hubs is not None and drags is not None:
+        # the pair has one term for all dry resistance, one for all drags; friction of hubs stands at the gear's
+        view = view.assign(
+            drag_loss=drags.sum("shaft"),
+            dry_loss=ds["load_work"] + ds["resistance_loss"].sum("shaft"),
+            gear_hub_loss=hubs.sum("shaft"),
+        )
+        nothing = {name: ((), 0.0) for name in ENERGY_BALANCE if name not in view}
+        view = view.assign(nothing)
+        for name, variable in ENERGY_BALANCE.items():
+            view[name].attrs = variable.attributes
+    if "event_mesh" in ds:
+        own = (ds["event_mesh"] == mesh) | ((ds["event_mesh"] < 0) & (ds["event_shaft"].isin([-1, shaft])))
+        view = view.isel(event=own.values)
+    return view
+
+
+def train_form(ds: xr.Dataset) -> xr.Dataset:
+    """Return a run of gears with ``shaft`` and ``mesh``, whatever its scene's form is.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A single run of a train, which is returned as it is, or of a pair: its shafts are ``pinion`` and ``gear``, its
+        mesh is ``mesh``.
+
+    Raises
+    ------
+    SceneError
+        If it is a run of a roller.
+    """
+    if is_train(ds):
+        return ds
+    scene = run_scene(ds)
+    if not isinstance(scene, GearScene):
+        raise SceneError("dataset", "of a roller", "must be a run of gears")
+    train = scene.train
+    made = {}
+    for name, sides in _OF_SHAFTS.items():
+        if all(side in ds for side in sides):
+            made[name] = xr.concat([ds[side].drop_attrs() for side in sides], "shaft", coords="minimal")
+    for name in _OF_MESHES:
+        if name in ds:
+            made[name] = ds[name].expand_dims(mesh=1)
+    catalogue = {**TRAIN_SAMPLES, **SHAFT_TOTALS, **MESH_TOTALS}
+    old = {side for sides in _OF_SHAFTS.values() for side in sides if side in ds}
+    two = {name for name in old if not name.endswith(("speed", "angle", "hub_load"))}
+    view = ds.drop_vars([*two, *(name for name in _OF_MESHES if name in ds)]).assign(made)
+    for name in made:
+        if name in catalogue:
+            view[name].attrs = catalogue[name].attributes
+    values = {
+        "shaft": [shaft.name for shaft in train.shafts],
+        "mesh": [mesh.name for mesh in train.meshes],
+        "mesh_driver": [mesh.driver for mesh in train.meshes],
+        "mesh_driven": [mesh.driven for mesh in train.meshes],
+        "mesh_ratio": [float(mesh.ratio) for mesh in train.meshes],
+        "shaft_sense": [shaft.sense for shaft in train.shafts],
+        "shaft_ratio": [float(shaft.ratio / train.shafts[-1].ratio) for shaft in train.shafts],
+    }
+    labels = {
+        name: (variable.dims, values[name], variable.attributes) for name, variable in COORDINATES.items()
+    }
+    names = {"judged_shaft": "gear", "judged_mesh": "mesh", "drive_shaft": "pinion"}
+    return view.assign_coords(labels).assign_attrs(names)

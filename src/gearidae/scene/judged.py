@@ -1,0 +1,48 @@
+"""The shaft of a train that a run is judged by, and the mesh whose pitch counts: that in which it is driven."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from gearidae.errors import SceneError
+from gearidae.scene.group import did_you_mean
+
+if TYPE_CHECKING:
+    from gearidae.scene.scene import Scene, TrainScene
+
+
+def judged_shaft(scene: TrainScene) -> int:
+    """Number of the shaft that is judged: ``run.judged``, by default that of the load.
+
+    Raises
+    ------
+    SceneError
+        If there is no shaft of that name.
+    """
+    name, names = scene.run.judged, [*scene.shafts]
+    if name is None:
+        return scene.train.load
+    if name not in names:
+        raise SceneError(
+            "run.judged", name, did_you_mean(name, names) or f"must be one of {', '.join(names)}"
+        )
+    return names.index(name)
+
+
+def judged_mesh(scene: TrainScene) -> int:
+    """Number of the first mesh in which the judged shaft is driven; of the drive's own shaft that which it drives."""
+    shaft, meshes = judged_shaft(scene), scene.train.meshes
+    driven = [k for k, mesh in enumerate(meshes) if mesh.b == shaft]
+    return (driven or [k for k, mesh in enumerate(meshes) if mesh.a == shaft])[0]
+
+
+def refuse_judged(scene: Scene) -> None:
+    """Refuse a shaft to be judged of a scene that has none by name.
+
+    Raises
+    ------
+    SceneError
+        If there is one.
+    """
+    if scene.run.judged is not None:
+        raise SceneError("run.judged", scene.run.judged, "is of a train: of a pair the gear is judged")
