@@ -14,6 +14,8 @@ import xarray as xr
 
 from gearidae.archive.run_summary import counted_over, summary_of
 from gearidae.archive.totals import balance_of, imbalance
+from gearidae.archive.train import work_shares
+from gearidae.archive.train.variables import is_train
 from gearidae.records.energy import LOSSES, TERMS
 from gearidae.scene.prefixes import with_prefix
 
@@ -37,6 +39,8 @@ def summary_rows(ds: xr.Dataset) -> list[Row]:
     if summary := summary_of(ds):
         rows += _with_reach(ds, _summary_rows(summary.as_plain()))
     rows += _standing_rows(ds)
+    if is_train(ds) and not ds["drive_work"].dims:
+        rows += _work_rows(ds)
     if numbers := balance_of(ds):
         rows += _with_reach(ds, _balance_rows(numbers))
     return rows
@@ -72,6 +76,21 @@ def _summary_rows(kept: dict[str, Any]) -> Iterator[tuple[str, Row]]:
     if kept.get("friction_loss") and kept["efficiency"] is not None:
         share = f"{100.0 * kept['efficiency']:.4g} %"
         yield "efficiency", ("efficiency", share, "drag and dry resistance over all losses")
+
+
+def _work_rows(ds: xr.Dataset) -> Iterator[Row]:
+    """Where the work of a train's drive goes, part by part; the shares add up to 1."""
+    yield "Work of the drive", with_prefix(float(ds["drive_work"]), "J", 5), "share of it"
+    efficiency = {
+        f"mesh {m}": e for m, e in zip(ds["mesh"].values, ds["mesh_efficiency"].values, strict=True)
+    }
+    efficiency |= {
+        f"hub of {s}": e for s, e in zip(ds["shaft"].values, ds["hub_efficiency"].values, strict=True)
+    }
+    for name, energy, share in work_shares(ds):
+        passes = efficiency.get(name, math.nan)
+        words = "" if math.isnan(passes) else f"; passes {100.0 * passes:.4g} % of what arrives"
+        yield name, with_prefix(energy, "J", 4), f"{100.0 * share:.3g} %{words}"
 
 
 def _standing_rows(ds: xr.Dataset) -> Iterator[Row]:

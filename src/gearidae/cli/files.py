@@ -149,7 +149,7 @@ def _description(archive: Path, ds: xr.Dataset) -> Iterator[tuple[str, str, str]
         yield f"Tabor parameter, {surface}", f"{attributes[f'tabor_parameter_{surface}']:.4g}", str(regime)
     yield "variables", "", ""
     for quantity, variable in ds.data_vars.items():
-        if not {"time", *DIMS} & {*variable.dims}:
+        if not {"time", "shaft", "mesh", *DIMS} & {*variable.dims}:
             continue  # solver statistics of the runs; their totals are printed above
         yield str(quantity), f"({', '.join(map(str, variable.dims))})", str(variable.attrs.get("units", ""))
     yield from _scene_rows(ds)
@@ -158,11 +158,14 @@ def _description(archive: Path, ds: xr.Dataset) -> Iterator[tuple[str, str, str]
 def _scene_rows(ds: xr.Dataset) -> Iterator[tuple[str, str, str]]:
     yield "scene", "", ""
     for table, content in scene_of(ds).items():
-        if isinstance(content, dict):
-            yield from (
-                (f"{table}.{key}", json.dumps(value), _unit(f"{table}.{key}"))
-                for key, value in content.items()
-            )
+        tables = {table: content}
+        if table in ("shafts", "meshes"):
+            tables = {f"{table}.{name}": entry for name, entry in content.items()}
+        for place, entries in tables.items():
+            if isinstance(entries, dict):
+                for key, value in entries.items():
+                    unit = "" if isinstance(value, dict) else _unit(f"{place}.{key}")
+                    yield f"{place}.{key}", json.dumps(value), unit
 
 
 def _values(coordinate: xr.DataArray) -> str:

@@ -39,7 +39,9 @@ def largest_force(ds: xr.Dataset) -> float:
     """Largest force of a run in either direction [N], as its solver kept it; NaN of a sweep, and before a run."""
     if swept_dims(ds):
         return math.nan
-    forces = [abs(float(ds[name])) for name in ("largest_mesh_force", "smallest_mesh_force") if name in ds]
+    forces = [
+        float(abs(ds[name]).max()) for name in ("largest_mesh_force", "smallest_mesh_force") if name in ds
+    ]
     return max(forces, default=math.nan)
 
 

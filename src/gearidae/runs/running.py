@@ -16,7 +16,7 @@ import numpy as np
 from gearidae.errors import SceneError, SolverError
 from gearidae.records import Block, EventKind, Events, Flank, Solution, Statistics
 from gearidae.records.standing import Holding
-from gearidae.scene import Scene, TrainScene, require_gears
+from gearidae.scene import Scene, TrainScene, is_long_train, require_gears
 from gearidae.scene.prefixes import with_prefix
 
 if TYPE_CHECKING:
@@ -45,6 +45,7 @@ def prepare(
     t_end: float | None = None,
     samples: int | str | None,
     backend: str = "auto",
+    trains: bool = False,
 ) -> SomeScene:
     """Put the settings of one call into the scene, so that the scene says exactly what was run.
 
@@ -60,6 +61,8 @@ def prepare(
         Number or rate of samples, or ``"off"``, in place of ``run.samples``.
     backend : str, optional
         As for `simulate`.
+    trains : bool, optional
+        Whether trains of several meshes are run.
 
     Raises
     ------
@@ -72,7 +75,7 @@ def prepare(
         raise SceneError(
             "scene", type(scene).__name__, "must be a Scene (from load_case, preset or Scene.from_dict)"
         )
-    if isinstance(scene, TrainScene):
+    if isinstance(scene, TrainScene) and not (trains and is_long_train(scene)):
         scene = require_gears(scene)  # type: ignore[assignment]  # one mesh: the same model as a pair
     _require_memory()
     from gearidae import engine  # what reads results does without it

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 from gearidae.errors import Interrupted, SceneError
 from gearidae.progress import RunProgress, run_progress
 from gearidae.runs.plausibility import log_doubts
-from gearidae.runs.running import early_end, prepare, solve, watched, with_samples
+from gearidae.runs.running import SomeScene, early_end, prepare, solve, watched, with_samples
 from gearidae.runs.starting import started_attributes, started_from
+from gearidae.scene.scene import is_long_train
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -99,7 +100,19 @@ def simulate(
     >>> scene = gd.preset("teodorescu2009_low_speed")
     >>> ds = gd.simulate(scene, archive="low_speed.nc")  # doctest: +SKIP
     """
-    scene = prepare(scene, rtol=rtol, samples=samples, backend=backend)
+    scene = prepare(scene, rtol=rtol, samples=samples, backend=backend, trains=True)
+    if is_long_train(scene):
+        from gearidae.runs.train_run import simulate_train  # which few runs need
+
+        return simulate_train(
+            scene if t_end is None else _ending(scene, t_end, 0.0),
+            backend=backend,
+            progress=progress,
+            archive=archive,
+            overwrite=overwrite,
+            compress=compress,
+            others={"resume": resume, "start": start, "on_block": on_block},
+        )
     begin = started_from(start, scene)
     if (
         begin.scene is not None and begin.scene.initial is not None
@@ -144,7 +157,7 @@ def simulate(
     return ds
 
 
-def _ending(scene: Scene, t_end: float, begin: float) -> Scene:
+def _ending(scene: SomeScene, t_end: float, begin: float) -> SomeScene:
     """Let a run that begins at a time end at another."""
     if begin == 0.0:
         return scene.replace({"run.duration": t_end})
