@@ -92,6 +92,11 @@ def test_an_archive_and_what_is_said_of_it(tmp_path, capfd):
     assert "hub of idler" in out
     assert main(["info", str(tmp_path / "out.nc")]) == 0
     assert "mesh second" in " ".join(capfd.readouterr().out.split())
+    for command, name in (("plot", "out.png"), ("report", "out.html")):
+        assert main([command, str(tmp_path / "out.nc"), "-o", str(tmp_path / name)]) == 0
+    page = (tmp_path / "out.html").read_text(encoding="utf-8")
+    assert "hub of idler" in page
+    assert page.count("<figure") == 1
     assert gd.open(tmp_path / "out.nc").attrs["judged_shaft"] == "output"
 
 
@@ -102,3 +107,11 @@ def test_what_trains_do_not_have_is_refused(run):
             gd.simulate(scene, **{name: value})
     with pytest.raises(gd.SceneError, match="must be a number or a rate"):
         gd.simulate(scene, samples="ringing")
+
+
+def test_the_picture_of_its_work(run):
+    ax = gd.plot.work(run)
+    labels = [tick.get_text() for tick in ax.get_yticklabels()]
+    assert labels == list(run.gearidae.work().index)
+    widths = [bar.get_width() for bar in ax.patches]
+    assert sum(widths) == pytest.approx(100.0)

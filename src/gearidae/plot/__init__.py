@@ -33,6 +33,7 @@ from gearidae.plot.spectra import spectrogram as spectrogram
 from gearidae.plot.surface import surface as surface
 from gearidae.plot.tooth_shape import tooth_outline as tooth_outline
 from gearidae.plot.torque import contact_torque as contact_torque
+from gearidae.plot.work import work as work
 from gearidae.studies.declared import studies
 
 if TYPE_CHECKING:

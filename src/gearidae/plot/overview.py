@@ -7,6 +7,7 @@ from matplotlib.figure import Figure, SubFigure
 
 from gearidae.archive.select import is_roller, scene_of, swept_dims
 from gearidae.archive.specimen import specimen_label
+from gearidae.archive.train.variables import is_train
 from gearidae.drawing.picture import new_picture
 from gearidae.drawing.style import runs_of
 from gearidae.plot.gears import gear_speed
@@ -29,6 +30,8 @@ def usual_pictures(ds: xr.Dataset, kind: str) -> dict[str, str]:
     dict of str to str
         Functions of `gearidae.plot` and their captions, the one that says most first.
     """
+    if kind == "runs" and is_train(ds):
+        return {"work": "Where the work of the drive goes"}
     if kind == "runs":
         sampled = any(name in ds for name in sampled_columns(roller=is_roller(ds)))
         return {"overview" if sampled or not swept_dims(ds) else "outcome": ""}

@@ -12,6 +12,7 @@ from gearidae.analysis.verdict.headline import headline
 from gearidae.archive.select import swept_dims
 from gearidae.archive.specimen import specimen_note
 from gearidae.archive.target import whole_file
+from gearidae.archive.train.variables import is_train
 from gearidae.drawing.style import number_shown
 from gearidae.errors import SceneError
 from gearidae.plot.overview import usual_pictures
@@ -70,6 +71,8 @@ def build_report(ds: xr.Dataset, *, most_values: int | None = None, teeth: bool 
     kind = kind_of(ds)
     if kind != "runs":
         return _study_page(ds, kind)
+    if is_train(ds):
+        return _train_page(ds)
     sections = (
         html.section("outcome", "Outcome", _specimen(ds), _long(outcome_table(ds), ds), summary_tables(ds)),
         html.section("series", "Time series", _viewer(ds, most_values)),
@@ -79,6 +82,15 @@ def build_report(ds: xr.Dataset, *, most_values: int | None = None, teeth: bool 
     )
     scripts = ("common.js", "save.js", "box.js", "map.js", "viewer.js", "player.js", "mesh.js", "teeth.js")
     return page(ds, "report", headline(ds), sections, scripts)
+
+
+def _train_page(ds: xr.Dataset) -> str:
+    """Make the page of a run of a train: its outcome, and where the work of the drive goes."""
+    sections = (
+        html.section("outcome", "Outcome", outcome_table(ds), summary_tables(ds)),
+        html.section("pictures", "Pictures", figures(ds, usual_pictures(ds, "runs"))),
+    )
+    return page(ds, "report", headline(ds), sections, ("common.js", "save.js"))
 
 
 def _long(table: str, ds: xr.Dataset) -> str:
