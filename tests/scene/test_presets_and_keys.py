@@ -31,7 +31,7 @@ CONTRACT = {
     "load": "shaft torque harmonic drag viscous schedule harmonic.amplitude harmonic.frequency harmonic.order "
     "harmonic.phase law law.name law.parameters",
     "initial": "gear_speed gap mesh_phase rest_time",
-    "run": "asperity_events balance impacts passages exposures duration samples rtol method stop checkpoints "
+    "run": "judged asperity_events balance impacts passages exposures duration samples rtol method stop checkpoints "
     "largest_step",
     "roller": "radius mass width speed height",
     "contact": "model bodies roughness asperity seed radius_spread asperities friction friction_law shear_strength",

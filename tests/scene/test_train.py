@@ -472,11 +472,15 @@ def test_stages_are_pairs_with_their_own_tables():
         scene.pair("third")
 
 
-def test_several_meshes_are_not_run_yet():
+def test_sweeps_and_most_studies_take_no_several_meshes():
     scene = scene_of(chain())
-    for call in (gd.simulate, gd.studies.starting_torque, lambda s: gd.sweep(s, {"run.rtol": [1e-5, 1e-6]})):
+    for call in (
+        gd.studies.sticking_threshold,
+        gd.studies.coating_map,
+        lambda s: gd.sweep(s, {"run.rtol": [1e-5, 1e-6]}),
+    ):
         with pytest.raises(
-            gd.SceneError, match=r"^meshes = \(2 meshes\): must be one: .*scene\.pair\(NAME\)"
+            gd.SceneError, match=r"^meshes = \(2 meshes\): must be one here: .*scene\.pair\(NAME\)"
         ):
             call(scene)
     with pytest.raises(gd.SceneError, match=r"see scene\.train\.meshes"):
