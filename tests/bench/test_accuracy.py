@@ -46,7 +46,8 @@ def test_the_scenes_are_the_shipped_cases(file, name, share):
 def test_every_case_is_there():
     measured = {"low_speed", "high_speed", "start_up", "braking", "alternating", "roller_slow", "roller_fast"}
     # whose new terms have closed forms, in tests/engine/test_speed_and_viscous.py and test_torque_of_angle.py
-    elsewhere = {"inspection", "running", "run_down", "microengine"}
+    # and, of the train, numbers of an independent prototype in tests/engine/train
+    elsewhere = {"inspection", "running", "run_down", "microengine", "transmission"}
     assert {path.stem for path in CASES.glob("*.toml")} == measured | elsewhere
     assert len(SCENES) == 3 * (5 + 4)
 

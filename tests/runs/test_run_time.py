@@ -14,7 +14,12 @@ from gearidae.progress import in_words
 from gearidae.runs.estimates import mean_drive_torque
 from gearidae.runs.run_time import run_time, time_in_words
 
-CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
+# run times of trains are not estimated
+CASES = [
+    path
+    for path in sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
+    if path.stem != "transmission"
+]
 LOW = gd.preset("teodorescu2009_low_speed")
 
 

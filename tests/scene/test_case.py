@@ -20,7 +20,7 @@ SHIPPED = [
         "roller_fast",
         "roller_slow",
     ),
-    *("run_down", "running", "start_up"),
+    *("run_down", "running", "start_up", "transmission"),
 ]
 
 
