@@ -77,7 +77,7 @@ stress: $(VENV)/installed
 	PYTHONPATH=tests:docs/scripts $(BIN)/python -m gearidae_pages.stress
 
 clean:
-	rm -rf $(VENV) $(LOWEST) $(NEWEST) out docs/_build docs/reference/generated build dist .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) $(LOWEST) $(NEWEST) out docs/_build docs/gallery docs/reference/generated build dist .mypy_cache .pytest_cache .ruff_cache .hypothesis
 
 # The package is installed in editable form: only a change of its requirements asks for more.
 $(VENV)/installed: pyproject.toml

@@ -1,4 +1,6 @@
-"""What does the record of a laboratory say about the drive and the coating of its gears?
+"""
+What does the record of a laboratory say about drive and coating?
+=================================================================
 
 Four steps: read the files of the logger, calibrate the drive torque with a record of new gears, assess the coating from
 a record of worn gears, and write a report of the run that explains it.
@@ -22,12 +24,16 @@ def log(name: str, **state: float) -> None:
 log("new.csv")
 log("worn.csv", **{"coating.sam_fraction": 0.66})
 
-# 1. Read: units and separators are recognised, the dataset is in SI units.
+# %%
+# Read: units and separators are recognised, and the dataset is in SI units.
+
 columns = ("Time [ms]", "Gear [1/min]")
 new = gd.analysis.read_signal("new.csv", columns=columns)
 steady = new.gear_speed.where(new.time > 0.05, drop=True)
 
-# 2. Calibrate: the steady speed of new gears gives the drive torque; the sensor is good to 1 %.
+# %%
+# Calibrate: the steady speed of new gears gives the drive torque; the sensor is good to 1 %.
+
 seen = gd.studies.Observation(
     of=gd.studies.steady_speed, value=float(steady.mean()), uncertainty=0.01 * float(steady.mean())
 )
@@ -36,15 +42,20 @@ torque = known.sel(parameter="drive.torque")
 print(f"drive torque: {float(torque['mean']):.3g} +- {float(torque.standard_deviation):.1g} N m")
 scene = scene.replace({"drive.torque": float(torque["mean"])})
 
-# 3. Assess: the ringing of the worn gears, compared with a map at that torque.
+# %%
+# Assess: the ringing of the worn gears, compared with a map at that torque.
+
 chart = gd.analysis.coating_map(scene, np.round(np.arange(1.0, 0.555, -0.04), 4))
 assessment = gd.analysis.assess("worn.csv", chart, columns=columns)
 print(
     f"{assessment.verdict}: {assessment.sam_fraction:.2f} of the monolayer is left "
     f"({assessment.low:.3f} to {assessment.high:.3f})"
 )
+ax = gd.plot.coating_map(chart, assessment=assessment)
 
-# 4. Report: the run with this torque and coating, as one page.
+# %%
+# Report: the run with this torque and coating, as one page.
+
 run = gd.simulate(
     scene.replace({"name": "worn_gears", "coating.sam_fraction": float(assessment.sam_fraction)})
 )

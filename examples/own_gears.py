@@ -1,4 +1,6 @@
-"""How does a pair of my own gears behave, with a coating of my own?
+"""
+How do my own gears behave, with a coating of my own?
+=====================================================
 
 Teeth, radii, backlash and surfaces are keys of the scene. Inertias are inputs of their own; here those of solid discs
 of silicon.
@@ -8,8 +10,6 @@ import math
 from pathlib import Path
 
 import gearidae as gd
-from gearidae.analysis.verdict import outcomes
-from gearidae.scene import dump_case
 
 teeth = 22, 44
 radius = 25e-6  # base circle of the pinion [m]; that of the gear follows
@@ -41,7 +41,11 @@ print(f"contact ratio {scene.geometry.contact_ratio:.3f}, module {scene.geometry
 for name, surface in (("bare", scene.surface), ("coated", scene.coated_surface)):
     print(f"Tabor parameter, {name}: {gd.contact.tabor_parameter(surface):.2f}")
 
+# %%
+# The run goes to a file, and the scene to a case file for the command line.
+
 run = gd.simulate(scene, archive="own_gears.nc", overwrite=True)
-(did,) = outcomes(run)
+(did,) = gd.outcomes(run)
 print(f"{did.verdict}, {did.min_speed:.3g} to {did.max_speed:.3g} rad/s, {did.impacts} impacts")
-Path("own_gears.toml").write_text(dump_case(scene), encoding="utf-8")  # for the command line
+Path("own_gears.toml").write_text(gd.dump_case(scene), encoding="utf-8")
+ax = gd.plot.gear_speed(run)

@@ -1,6 +1,9 @@
-"""How do I get numbers out of archives too large for memory?
+"""
+How do I read archives that are larger than memory?
+===================================================
 
-An archive is a netCDF4 file. With `chunks={}` xarray leaves it on the disk and Dask works through it piece by piece.
+An archive is a netCDF4 file. With ``chunks={}`` xarray leaves it on the disk, and Dask works through it piece by piece
+(``pip install "gearidae[dask]"``).
 """
 
 import numpy as np
@@ -30,3 +33,9 @@ with xr.open_dataset("sweep.nc", chunks={}) as ds:
         times = exits.where(ds.event_sam_fraction == fraction).dropna("event").values
         apart = np.diff(times).mean() * 1e3
         print(f"SAM {fraction:g}: a tooth leaves every {apart:.1f} ms on average")
+
+# %%
+# Of a picture only the samples that it shows are read.
+
+with gd.open("sweep.nc") as ds:
+    ax = gd.plot.gear_speed(ds)

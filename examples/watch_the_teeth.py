@@ -1,7 +1,9 @@
-"""What do the teeth do while the gear is held back?
+"""
+What do the teeth do while the gear is held back?
+=================================================
 
-The pairs of teeth of a run, which is repeated for it: their gaps, forces and states at a time, as numbers, as a
-picture and as a moving one.
+At the dip of the contact torque a leaving tooth pulls the gear back. ``tooth_contacts`` repeats the run up to that time
+and gives the pairs of teeth: their gaps, forces and states.
 """
 
 import gearidae as gd
@@ -17,5 +19,8 @@ for pair in state.contacts:
     numbers = f"{pair.gap * 1e9:.1f} nm, {pair.force * 1e12:+.3f} pN, {pair.state.name}"
     print(f"  pair {pair.pair}, {pair.flank.name}: {numbers}")
 
-gd.plot.write(gd.plot.teeth(run, time=dip), "teeth.png", overwrite=True)
+# %%
+# The same as a picture, and as a moving one.
+
+figure = gd.plot.teeth(run, time=dip)
 gd.plot.animate_teeth(run, "teeth.gif", start=dip - 2e-3, stop=dip + 2e-3, frames=8, dpi=60, overwrite=True)
