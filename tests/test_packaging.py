@@ -136,7 +136,7 @@ def shipped(folder):
         path.relative_to(ROOT).as_posix()
         for path in (ROOT / folder).rglob("*")
         if path.is_file()
-        and not {"__pycache__", "_build", "generated"}.intersection(path.parts)
+        and not {"__pycache__", "_build", "gallery", "generated"}.intersection(path.parts)
         and not any(part.startswith(".") for part in path.relative_to(ROOT).parts)
     }
 
