@@ -149,7 +149,7 @@ HINDMARSH_2005 = Reference(
 RANDALL_2024 = Reference(
     "randall2024",
     ("C. R. Randall",),
-    "scikit-SUNDAE: Python bindings to SUNDIALS Differential Algebraic Equation solvers",
+    "scikit-SUNDAE: A scikit with Python bindings to SUNDIALS Differential Algebraic Equation solvers",
     2024,
     doi="10.11578/dc.20241104.3",
 )
@@ -162,7 +162,6 @@ GARCIA_SNIEGOWSKI_1995 = Reference(
     "Sensors and Actuators A",
     "48",
     "203-214",
-    doi="10.1016/0924-4247(95)00999-X",
 )
 """The drive of a microengine."""
 ARCHARD_1953 = Reference(

@@ -227,8 +227,17 @@ def test_the_cycle_of_a_braked_run_is_its_last_pitch_while_it_ran():
     assert speed[-1] == pytest.approx(0.04, abs=0.001)
 
 
-def test_turns_of_both_shafts_and_sidebands_are_named_where_teeth_have_errors():
-    teeth = LOW.replace({"mesh.pitch_error_rms": "1 nm"})
+ORBIT = {
+    "mesh.backlash": "0.5 um",
+    "drive.torque": 0.0,
+    "drive.law": {"name": "microengine", "radius": "10 um", "force": "10 uN", "frequency": "600 Hz"},
+    "gears.pinion_hub_clearance": "0.5 um",
+}
+
+
+@pytest.mark.parametrize("changes", [{"mesh.pitch_error_rms": "1 nm"}, ORBIT], ids=["errors", "orbit"])
+def test_turns_of_both_shafts_and_sidebands_are_named_where_turns_differ(changes):
+    teeth = LOW.replace(changes)
     run = _with_speed(lambda t: 30.0 + 0.1 * np.sin(900.0 * t)).assign_attrs(
         scene=json.dumps(teeth.to_dict())
     )

@@ -10,6 +10,8 @@ import pytest
 
 import gearidae as gd
 from gearidae.archive.select import run_scene
+from gearidae.plot.teeth_view import MOST_PLAY, enlarged
+from gearidae.plot.tooth_shape import tooth_outline
 from gearidae.populations.met_flank import contact_arc, met_flank
 from gearidae.records import Flank
 from gearidae.report import build_report
@@ -94,7 +96,7 @@ def test_embedded_states_are_samples_of_the_record(single):
     assert run["every"] == 31
     assert 90 < len(states) <= 100
     for at in range(0, len(states), 7):
-        time, phase, u, speed, force = states[at, :5]
+        time, travelled, u, speed, force = states[at, :5]
         sample = single.isel(time=31 * at)
         # float32 keeps seven digits
         assert time == pytest.approx(sample.time.item(), rel=1e-6, abs=0.0)
@@ -105,7 +107,9 @@ def test_embedded_states_are_samples_of_the_record(single):
         )
         turned = sample.gear_angle.item() * SCENE.geometry.base_radius_gear / SCENE.geometry.base_pitch
         travel = SCENE.initial.mesh_phase + turned
-        assert phase == pytest.approx(travel % 1.0, abs=1e-6)
+        assert travelled == pytest.approx(
+            travel, abs=1e-6
+        )  # less than the 76 pitches that bring both gears back
         (state,) = tooth_contacts(single, sample.time.item())
         by_pair = {(contact.pair, contact.flank): contact for contact in state.contacts}
         pairs = states[at, 5:].reshape(run["places"], len(PAIR))
@@ -224,3 +228,48 @@ def test_browser_shows_the_teeth(kind, options, request, tmp_path):
     assert seen["stopped"] == "Play"
     assert seen["--pinion"] == seen["--gear"] == "true"
     assert int(seen["wide"]) <= 0  # nothing sticks out to the side
+
+
+# The first path that is drawn after a move of the slider, which is the pinion, in modules; see `drawNear` of mesh.js.
+TRACE = """<script>
+const points = [];
+let paths = 0;
+(async () => {
+  const pen = CanvasRenderingContext2D.prototype, begin = pen.beginPath, line = pen.lineTo;
+  const mesh = document.querySelector(".mesh");
+  pen.beginPath = function () { if (this.canvas === mesh) paths++; begin.call(this); };
+  pen.lineTo = function (a, b) {
+    if (this.canvas === mesh && paths <= 2) points.push([paths, a, b]);
+    line.call(this, a, b);
+  };
+  const slider = document.querySelector("#teeth-viewer input");
+  slider.value = FRAME;
+  slider.dispatchEvent(new Event("input"));
+  await new Promise((done) => setTimeout(done, 200));
+  const size = Math.min(mesh.clientWidth / 9.2, mesh.clientHeight / 3.9);
+  const hint = [...document.querySelectorAll("#teeth-viewer .hint")].map((one) => one.textContent).join(" ");
+  document.title = JSON.stringify({ hint, points: points.map(
+    ([path, a, b]) => [path, (a - mesh.clientWidth / 2) / size, 0.05 - (b - mesh.clientHeight / 2) / size]) });
+})();
+</script>"""
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")
+def test_browser_draws_teeth_with_their_errors(tmp_path):
+    """Each gear as the picture of `gd.plot.teeth` has it, whose teeth a test of its own compares with their gaps."""
+    scene = gd.preset("teodorescu2009").replace({"mesh.pitch_error_rms": "20 nm", "run.samples": 101})
+    run = gd.simulate(scene, t_end=1e-4)
+    seen = looked_at(build_report(run), TRACE.replace("FRAME", "60"), tmp_path, "--window-size=1200,900")
+    factor = enlarged(scene)
+    assert factor > 1.0
+    assert f"Gaps, and errors of single teeth, \N{MULTIPLICATION SIGN} {factor:g}." in seen["hint"]
+    (state,) = tooth_contacts(run, run.time[60].item())
+    picture = tooth_outline(scene, gaps=factor, most_play=MOST_PLAY)
+    flank = min(state.contacts, key=lambda contact: contact.gap).flank
+    angles = picture.turned(state.travel, state.transmission_error, flank)
+    for path, (wheel, angle) in enumerate(zip((picture.pinion, picture.gear), angles, strict=True), 1):
+        drawn = np.array([point for number, *point in seen["points"] if number == path])
+        expected = wheel.outline(angle, 5) / scene.geometry.module
+        teeth = 11 * len(wheel.tooth)
+        # four digits of a tooth's outline, and float32 of the travel; the largest error is drawn as 0.12 modules
+        np.testing.assert_allclose(drawn[:teeth], expected[:teeth], rtol=0.0, atol=2e-4)

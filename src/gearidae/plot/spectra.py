@@ -33,6 +33,7 @@ from gearidae.drawing.style import (
     tidy,
 )
 from gearidae.errors import SceneError
+from gearidae.scene.orbit import has_orbit
 from gearidae.scene.pitch_errors import has_pitch_errors
 from gearidae.scene.prefixes import with_prefix
 
@@ -130,10 +131,11 @@ def power_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     Axes
         With the frequencies of the drive and of the mesh and its multiples marked, from the mean speed of the fastest
         run whose speed stays within a tenth; of run-ups and braked runs `orders` marks the mesh. Where teeth have
-        errors of their own, or gears runout, the turns of both shafts and the sidebands beside the mesh are marked too.
-        If there is no drive frequency and the teeth ring far above the mesh after impacts, both axes are logarithmic,
-        up to beyond the ringing, the frequencies of which are marked for a single run; the spectrum is averaged over
-        bands of 1/24 octave there, and only the start-up is left out. The estimate is named in the picture.
+        errors of their own, gears runout, or the pinion orbits in its hub, the turns of both shafts and the sidebands
+        beside the mesh are marked too. If there is no drive frequency and the teeth ring far above the mesh after
+        impacts, both axes are logarithmic, up to beyond the ringing, the frequencies of which are marked for a single
+        run; the spectrum is averaged over bands of 1/24 octave there, and only the start-up is left out. The estimate
+        is named in the picture.
 
     Raises
     ------
@@ -197,8 +199,9 @@ def orders(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     -------
     Axes
         Up to four times the order of the mesh, which is marked with its multiples, and the pinion's turn. Where teeth
-        have errors of their own, or gears runout, it is drawn up to one and a half times the order of the mesh, with
-        the turns of both shafts and the sidebands beside the mesh, one and two turns of the pinion away.
+        have errors of their own, gears runout, or the pinion orbits in its hub, it is drawn up to one and a half times
+        the order of the mesh, with the turns of both shafts and the sidebands beside the mesh, one and two turns of the
+        pinion away.
 
     Raises
     ------
@@ -479,12 +482,12 @@ def _mark_all(ax: Axes, drive: list[float], mesh: float, rings: list[float]) -> 
 
 
 def _turns(ds: xr.Dataset) -> dict[str, int]:
-    """Teeth of the gears whose turns show in a spectrum, as teeth or a runout let no two of them be alike."""
+    """Teeth of the gears whose turns show in a spectrum: by errors of teeth, a runout, or the orbit of the pinion."""
     scene = run_scene(ds.isel(dict.fromkeys(swept_dims(ds), 0)))
     mesh, gears = scene.mesh, scene.gears
     if mesh is None or gears is None:
         return {}
-    alike = not (has_pitch_errors(scene) or mesh.pinion_runout or mesh.gear_runout)
+    alike = not (has_pitch_errors(scene) or mesh.pinion_runout or mesh.gear_runout or has_orbit(scene))
     return {} if alike else {"pinion": gears.pinion_teeth, "gear": gears.gear_teeth}
 
 

@@ -40,7 +40,7 @@ _TEETH = 5  # on either side of the pitch point
 _ACROSS, _DOWN, _UP = 4.6, 1.9, 2.0  # modules shown
 _LONGEST = 1.4  # modules of the longest arrow
 _NO_ARROW = 0.01  # of the largest force: less has no arrow
-_SHOWN, _MOST_PLAY = 0.12, 0.15
+_SHOWN, MOST_PLAY = 0.12, 0.15
 """Modules of the largest error of a tooth where it is drawn larger than it is, and pitches of the backlash at most."""
 _ROUNDED = 8.0  # roughnesses up to which the gap at a rounded end counts as near
 
@@ -120,7 +120,7 @@ def nearest_pairs(state: MeshState, places: int) -> list[ToothContact]:
     return sorted(taken.values(), key=lambda contact: contact.pair)
 
 
-def _enlarged(scene: GearScene) -> float:
+def enlarged(scene: GearScene) -> float:
     """How many times their size gaps and errors of teeth are drawn: 1 without errors."""
     largest = max(float(np.abs(errors).max()) for errors in errors_of_teeth(scene))
     if largest == 0.0:
@@ -145,7 +145,7 @@ class TeethView:
         self, ds: xr.Dataset, states: Sequence[MeshState], figure: Figure | SubFigure | None = None
     ) -> None:
         self._scene = require_gears(run_scene(ds))
-        self._picture = tooth_outline(self._scene, gaps=_enlarged(self._scene), most_play=_MOST_PLAY)
+        self._picture = tooth_outline(self._scene, gaps=enlarged(self._scene), most_play=MOST_PLAY)
         self._largest = max(
             (abs(contact.force) for state in states for contact in state.contacts), default=0.0
         )

@@ -84,7 +84,7 @@
     const long = wheels.reduce((sum, wheel) => sum + wheel.reach + Math.abs(wheel.centre), 1), tall = 2 * Math.max(...wheels.map((wheel) => wheel.reach)) + 1;
     const size = Math.min(width / long, height / tall);
     const pitchPoint = (width - size * long) / 2 + size * (gears.pinion.centre + gears.pinion.reach + 0.5);
-    const angles = turned(gears, state.travel * gears.pitch, state.transmission_error);
+    const angles = turned(gears, state.travel * gears.pitch, state.transmission_error, 0);
     wheels.forEach((wheel, k) => {
       pen.save();
       pen.translate(pitchPoint, height / 2);

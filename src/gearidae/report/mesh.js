@@ -12,19 +12,21 @@
   }
 
   // Angles that the teeth at the pitch point have turned beyond it, by the travel of the gear and the transmission error [m].
-  function turned(gears, travel, error) {
-    const beyond = travel - gears.approach;
-    return [(beyond - gears.halfBacklash + gears.gaps * error) / gears.pinion.base, beyond / gears.gear.base];
+  // Where the backlash is drawn smaller than the gaps are, the gap of the flank in use is true.
+  function turned(gears, travel, error, flank) {
+    const beyond = travel - gears.approach, play = flank === COAST ? 2 * gears.halfBacklash - gears.play : 0;
+    return [(beyond - gears.halfBacklash + play + gears.gaps * error) / gears.pinion.base, beyond / gears.gear.base];
   }
 
   // Path of the teeth nearest to the mesh, so many on either side, closed by the rim.
   function outline(pen, wheel, turned, x, y, teeth) {
     const pitch = 2 * Math.PI / wheel.teeth, count = Math.min(teeth, Math.floor((wheel.teeth - 1) / 2));
-    const beyond = turned - Math.round(turned / pitch) * pitch;
+    const passed = Math.round(turned / pitch), beyond = turned - passed * pitch;
+    const error = (k) => wheel.errors[((passed + wheel.turning * k) % wheel.teeth + wheel.teeth) % wheel.teeth] || 0; // those that follow lag behind
     pen.beginPath();
     let first = null, last = null;
     for (let k = -count; k <= count; k++) {
-      const angle = wheel.turning * beyond - k * pitch, c = Math.cos(angle), s = Math.sin(angle);
+      const angle = wheel.turning * beyond - k * pitch - error(k), c = Math.cos(angle), s = Math.sin(angle);
       for (let i = 0; i < wheel.tooth.length; i += 2) {
         const a = c * wheel.tooth[i] - s * wheel.tooth[i + 1], b = s * wheel.tooth[i] + c * wheel.tooth[i + 1];
         first = first || [a, b];
@@ -47,7 +49,7 @@
     if (!sheet) return null;
     const { pen, width, height } = sheet, size = Math.min(width / (2 * ACROSS), height / (UP + DOWN));
     const x = (a) => width / 2 + size * a, y = (b) => height / 2 + size * ((UP - DOWN) / 2 - b);
-    const angles = turned(gears, travel, error);
+    const angles = turned(gears, travel, error, used);
     [gears.pinion, gears.gear].forEach((wheel, k) => {
       outline(pen, wheel, angles[k], x, y, TEETH);
       pen.fillStyle = style(k ? "--gear" : "--pinion");

@@ -52,7 +52,7 @@
 
   function drawMesh(now, pairs) {
     const used = pairs.length && pairs[0].flank === COAST ? COAST : 0;
-    const motion = { travel: now.phase * run.pitch, error: now.transmission_error, speed: now.gear_speed };
+    const motion = { travel: now.travel * run.pitch, error: now.transmission_error, speed: now.gear_speed };
     const near = drawNear(mesh, run, motion, used);
     if (!near) return;
     for (const pair of pairs) if (pair.state !== OPEN) drawForce(near, run, pair.flank, pair.place, pair.force, run.largest);
@@ -243,6 +243,7 @@
   });
   take(0);
   const notes = [];
+  if (run.gaps !== 1) notes.push("Gaps, and errors of single teeth, × " + run.gaps + ".");
   if (run.every > 1) notes.push("One of every " + run.every + " samples is shown.");
   notes.push("Blue pushes or is pressed, orange pulls or is stretched, green is covered by the monolayer. Arrows: force of a pair on the gear.");
   if (run.population) notes.push("The close-ups show the tallest asperities of each flank, all that stand side by side across its width; triangles mark the joined ones.");

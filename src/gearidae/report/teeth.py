@@ -14,7 +14,14 @@ from gearidae.arrays import Floats
 from gearidae.drawing.style import Run, runs_of
 from gearidae.errors import SceneError
 from gearidae.plot.asperities import flank_asperities, half_width, joined_asperities, touching_arc
-from gearidae.plot.teeth_view import STATE_WORDS, mesh_states, nearest_pairs, pairs_at_most
+from gearidae.plot.teeth_view import (
+    MOST_PLAY,
+    STATE_WORDS,
+    enlarged,
+    mesh_states,
+    nearest_pairs,
+    pairs_at_most,
+)
 from gearidae.records import sampled_columns
 from gearidae.report import html
 from gearidae.report.gears import pack_gears
@@ -26,8 +33,9 @@ if TYPE_CHECKING:
 
 MOST_STATES = 3000
 """States embedded at most, over all runs."""
-FRAME = ("time", "phase", "transmission_error", "gear_speed", "mesh_force")
-"""Numbers of a state: time [s], travel in pitches (its fraction), u [m], speed [rad/s], force [N]; then its pairs."""
+FRAME = ("time", "travel", "transmission_error", "gear_speed", "mesh_force")
+"""Numbers of a state: time [s], travel in pitches since both gears stood so, u [m], speed [rad/s], force [N]; then its
+pairs."""
 PAIR = (
     "number",
     "flank",
@@ -120,7 +128,7 @@ def _pack_run(run: xr.Dataset, most: int) -> dict[str, Any]:
     return {
         "every": every,
         "places": places,
-        **pack_gears(scene),
+        **pack_gears(scene, gaps=enlarged(scene), most_play=MOST_PLAY),
         "roughness": scene.surface.roughness,
         "halfWidth": half_width(scene),
         "population": scene.contact.is_discrete,
@@ -170,8 +178,11 @@ class _Asperities:
 
 def _row(asperities: _Asperities, state: MeshState, places: int) -> list[float]:
     """Return the numbers of a state; each of its pairs in a place of its own."""
-    phase = state.travel / asperities.scene.geometry.base_pitch
-    row = [state.time, phase % 1.0, state.transmission_error, state.gear_speed, state.mesh_force]
+    geometry = asperities.scene.geometry
+    # as many pitches as bring both gears back to where they were: float32 keeps the place of millions of pitches
+    turns = math.lcm(geometry.pinion_teeth, geometry.gear_teeth)
+    travel = state.travel / geometry.base_pitch % turns
+    row = [state.time, travel, state.transmission_error, state.gear_speed, state.mesh_force]
     pairs = {contact.pair % places: contact for contact in nearest_pairs(state, places)}
     for place in range(places):
         row += _pair(asperities, pairs[place]) if place in pairs else [math.nan] * len(PAIR)
