@@ -54,7 +54,7 @@ def run_progress(wanted: bool | RunProgress, duration: float) -> Iterator[RunRep
     Yields
     ------
     RunReport
-        What the engine shall call. It also logs, once, how long the run will take at the rate of its first second, if
+        What the engine shall call. It also logs, once, how long the run will take at the rate of its second second, if
         that is more than ten minutes.
     """
     if callable(wanted):
@@ -108,8 +108,9 @@ class RunReport:
 class _Pace:
     """Rate of a run or of a sweep of late, from its first report on.
 
-    Compiling is over then, and what was resumed is back. Runs change their pace where they begin to adhere. All cores
-    that compute a sweep count, as the rate is one of all its runs.
+    What was resumed is back then. Compiled functions are loaded when they are first called, which may take a second in
+    which nothing is done: what is announced is the rate of the second that follows. Runs change their pace where they
+    begin to adhere. All cores that compute a sweep count, as the rate is one of all its runs.
 
     Parameters
     ----------
@@ -126,6 +127,7 @@ class _Pace:
     def __init__(self, end: float, what: str, long: float, recent: float) -> None:
         self._end, self._what, self._long, self._recent = end, what, long, recent
         self._reports: deque[tuple[float, float]] = deque()
+        self._loaded: tuple[float, float] | None = None
         self._judged = False
 
     def rate(self, time: float) -> float:
@@ -137,11 +139,21 @@ class _Pace:
         began, start = self._reports[0]
         elapsed = now - began
         rate = (time - start) / elapsed if elapsed > 0.0 else 0.0
-        if not self._judged and elapsed >= 1.0 and rate > 0.0:
-            self._judged = True
-            if (remaining := (self._end - time) / rate) > self._long:
-                log.warning("at this rate %s another %s", self._what, in_words(remaining))
+        if not self._judged and elapsed >= 1.0:
+            self._judge(now, time)
         return rate
+
+    def _judge(self, now: float, time: float) -> None:
+        """Announce how long it takes, once, by what has been done since the first second."""
+        if self._loaded is None:
+            self._loaded = now, time
+            return
+        began, start = self._loaded
+        if now - began < 1.0 or time <= start:
+            return
+        self._judged = True
+        if (remaining := (self._end - time) * (now - began) / (time - start)) > self._long:
+            log.warning("at this rate %s another %s", self._what, in_words(remaining))
 
 
 def in_words(seconds: float) -> str:

@@ -69,6 +69,18 @@ def test_run_and_info_tell_the_same(printed):
     assert [row["name"] for row in told["limits"]][:1] == ["expected_asperities"]
 
 
+def test_impacts_of_each_flank_are_counted_with_their_forces(printed):
+    rattle = ["run.duration=0.1 ms", "run.samples=off", "run.impacts=true", "coating.sam_fraction=1"]
+    told = printed("run", str(CASES / "alternating.toml"), "--set", *rattle, "-o", "hits.nc")["impacts"]
+    with gd.open("hits.nc") as ds:
+        hits = ds.gearidae.impacts()
+    assert sum(row["count"] for row in told) == len(hits) > 0
+    for row in told:
+        of_flank = hits[hits["flank"] == row["flank"]]
+        assert row["largest_force"] == of_flank["largest_force"].max()
+        assert row["impulse"] == pytest.approx(of_flank["impulse"].sum(), rel=1e-12)
+
+
 def test_a_quiet_run_still_gives_its_answer(printed):
     assert printed("--quiet", "run", "roller_slow", "-o", "r.nc")["outcomes"][0]["impacts"] == 1
 

@@ -16,8 +16,10 @@ from gearidae.archive.citing import cite
 from gearidae.archive.journal import file_of
 from gearidae.archive.run_summary import summary_of
 from gearidae.archive.select import scene_of, swept_dims
+from gearidae.archive.tables import row_table
 from gearidae.archive.totals import energy_balance
 from gearidae.cli.output import print_answer
+from gearidae.records import Impacts
 from gearidae.runs.kept_validity import validity_of
 
 if TYPE_CHECKING:
@@ -52,12 +54,29 @@ def archive_facts(archive: Path, ds: xr.Dataset) -> dict[str, Any]:
         **_contents(ds),
         "swept": {dim: ds[dim].values.tolist() for dim in swept_dims(ds)},
         "outcomes": [{**asdict(outcome), "words": outcome.words} for outcome in outcomes(ds)],
+        **({"impacts": _impacts(ds)} if Impacts.dim in ds.dims else {}),
         "run_summary": summary and summary.as_plain(),
         "energy_balance": energy_balance(ds),
         "limits": [asdict(row) for row in validity_of(ds)],
         "references": cite(ds).splitlines(),
         "scene": scene_of(ds),
     }
+
+
+def _impacts(ds: xr.Dataset) -> list[dict[str, Any]]:
+    """Count the impacts of each flank of each run, with their forces, impulses and losses."""
+    table = row_table(ds, Impacts)
+    labels = [str(name) for name in table.columns[: table.columns.get_loc("time")]]
+    groups = table.groupby([*labels, "flank"], observed=True, dropna=False)
+    told = groups.agg(
+        count=("time", "size"),
+        median_force=("largest_force", "median"),
+        largest_force=("largest_force", "max"),
+        impulse=("impulse", "sum"),
+        energy_lost=("energy_lost", "sum"),
+    )
+    rows: list[dict[str, Any]] = told.reset_index().to_dict("records")
+    return rows
 
 
 def product_facts(path: Path, ds: xr.Dataset, kind: str) -> dict[str, Any]:
