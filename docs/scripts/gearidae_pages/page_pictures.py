@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Final
 
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 
 import gearidae as gd
 
@@ -20,24 +20,24 @@ __all__ = ["PICTURES", "draw"]
 _DPI: Final = 200.0
 
 
-def _low_speed() -> Figure:
+def _low_speed() -> Figure | SubFigure:
     """As ``make run`` does it."""
     scene = gd.preset("teodorescu2009_low_speed").replace({"run.duration": "0.6 s"})
     return gd.plot.overview(gd.sweep(scene, {"coating.sam_fraction": [1.0, 0.8, 0.6, 0.5, 0.47, 0.45]}))
 
 
-def _overview(case: str) -> Callable[[], Figure]:
+def _overview(case: str) -> Callable[[], Figure | SubFigure]:
     """Draw a shipped case as it is."""
     return lambda: gd.plot.overview(gd.simulate(gd.load_case(f"cases/{case}.toml")))
 
 
-def _teeth() -> Figure:
+def _teeth() -> Figure | SubFigure:
     """Draw a tooth that leaves the mesh at 50 % coverage."""
     scene = gd.preset("teodorescu2009_low_speed").replace({"coating.sam_fraction": 0.5})
     return gd.plot.teeth(gd.simulate(scene), time=77.4e-3)
 
 
-def _impact_forces() -> Figure:
+def _impact_forces() -> Figure | SubFigure:
     """Draw the rattle of the page on impacts."""
     scene = gd.preset("alternating").replace(
         {
@@ -52,7 +52,7 @@ def _impact_forces() -> Figure:
     return gd.plot.impact_forces(gd.simulate(scene)).figure
 
 
-PICTURES: Final[Mapping[str, Callable[[], Figure]]] = {
+PICTURES: Final[Mapping[str, Callable[[], Figure | SubFigure]]] = {
     "low_speed": _low_speed,
     "start_up": _overview("start_up"),
     "braking": _overview("braking"),
