@@ -49,6 +49,24 @@ def test_small_blocks_hold_the_same_run(backend, room, monkeypatch):
     np.testing.assert_array_equal(pieces[1], whole[1])
 
 
+def test_runs_that_take_turns_have_rooms_of_their_own_which_later_ones_use(monkeypatch):
+    """What one writes into its room is not seen in another's blocks; a third takes the room of one that has ended."""
+    monkeypatch.setattr(driver, "_rooms", {})
+    monkeypatch.setattr(native, "FIRST_STEPS", 13)
+    monkeypatch.setattr(native, "BLOCK_STEPS", 13)
+    scenes = (SCENE, SCENE.replace({"drive.torque": 5e-18}))
+
+    def begin(scene):
+        return run_blocks(make_problem(scene), 1e-6, 301, "native", Statistics())
+
+    turns = list(itertools.zip_longest(*map(begin, scenes)))
+    assert len(turns) > 10
+    for parts, scene in zip(zip(*turns, strict=True), scenes, strict=True):
+        alone = collect(begin(scene))
+        np.testing.assert_array_equal(np.concatenate([block.rows for block in parts if block]), alone[0])
+    assert [len(rooms) for rooms in driver._rooms.values()] == [2]
+
+
 def test_a_block_of_slow_steps_ends_after_a_few(monkeypatch):
     """Blocks seem to take a second: all have one step, as the first of costly scenes, and the tiny run few blocks."""
     monkeypatch.setattr(native, "FIRST_STEPS", 1)

@@ -42,9 +42,9 @@ flanks = st.sampled_from([0, 1])
 
 def forces(u, v, phase, w):
     """Forces of a start from there, all contacts fresh."""
-    m = PROBLEM.shortened(1.0).model  # a copy
-    y = np.array([u, v, phase, w])
-    begin(m, 0.0, y)
+    problem = PROBLEM.shortened(1.0)  # a copy
+    m, y = problem.model, np.array([u, v, phase, w])
+    begin(problem.addresses.place, 0.0, y)
     return np.array(mesh_forces(m, 0.0, y, False)[:2])
 
 
@@ -158,9 +158,10 @@ def test_in_a_step_that_turns_round_the_contact_has_been_at_the_turning_point(ga
 @given(u=us, v=rates, phase=phases, w=rates, cj=st.floats(0.1, 100.0))
 def test_jacobian_is_the_residuals_derivative(u, v, phase, w, cj):
     """Without adhesion, whose branches part at a start; both flanks carry force."""
-    m = SMOOTH.shortened(1.0).model  # a copy
+    problem = SMOOTH.shortened(1.0)  # a copy
+    m = problem.model
     y, yp, size = np.array([u, v, phase, w]), np.zeros(4), np.zeros(4)
-    begin(m, 0.0, y)
+    begin(problem.addresses.place, 0.0, y)
     exact = np.empty(16)
     jacobian(m, 0.0, cj, y, exact)
     exact = exact.reshape(4, 4).T

@@ -32,6 +32,12 @@ class Function:
         """Call it from Python."""
         return self._called(*arguments)
 
+    def prepare(self, *arguments: Any) -> None:
+        """Compile the form for Python, or take it from the cache, without calling it; for arguments like these."""
+        from gearidae.compiled.cache import numba
+
+        self._called.compile(tuple(map(numba.typeof, arguments)))
+
     def __reduce__(self) -> tuple[Any, ...]:
         """Say where it stands and what it closes over: by this numba knows the code of a closure on disk again.
 

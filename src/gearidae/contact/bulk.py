@@ -164,6 +164,7 @@ def line_grid(reach: float, width: float, modulus: float, nodes: int) -> LineGri
     return LineGrid(x, weights, bulk_influence(x, knots, width, modulus) @ cardinals)
 
 
+@lru_cache(maxsize=64)
 def place_nodes(reach: float, nodes: int) -> tuple[Array, Array]:
     """Where `line_grid` has its nodes, and weights by the trapezoidal rule in u.
 
@@ -180,11 +181,14 @@ def place_nodes(reach: float, nodes: int) -> tuple[Array, Array]:
     Returns
     -------
     x, weights : ndarray, shape (n,)
+        Read-only, shared between callers.
     """
     u = np.linspace(0.0, 1.0, nodes)
     x = reach * np.sinh(_GRADING * u) / math.sinh(_GRADING)
     weights = 2.0 * np.hypot(_GRADING * x, _GRADING * reach / math.sinh(_GRADING)) / (nodes - 1)
     weights[[0, -1]] *= 0.5
+    for array in (x, weights):
+        array.setflags(write=False)
     return x, weights
 
 

@@ -137,7 +137,7 @@ def checkpoint_of_start(scene: Scene, start: Start) -> Floats:
     if m.scene.guarded != 0:
         set_shaft_sides(m, y)
     if source.scene.follow.balance != m.scene.follow.balance:
-        _begin_balance(m, y)
+        _begin_balance(new.addresses.place, m, y)
     if source.scene.follow.passages != m.scene.follow.passages:
         m.state.passage[:] = np.zeros((), STATE["passage"])  # nothing is known of what has been before
     if source.scene.follow.impacts != m.scene.follow.impacts:
@@ -304,13 +304,13 @@ def _begin_stretch(m: Model) -> None:
         s.segment[which] = int((ends <= time).sum())
 
 
-def _begin_balance(m: Model, y: Floats) -> None:
+def _begin_balance(place: int, m: Model, y: Floats) -> None:
     """Begin an energy balance that the other run has not kept, or leave out the one that it has."""
     assign(m.state.energy, np.zeros(1, STATE["energy"])[0])
     for name in ("lag", "lag_power", "lag_rate"):
         m.state.history[name] = 0.0
     if m.scene.follow.balance:
-        open_balance(m, y)
+        open_balance(place, y)
 
 
 def _hold_or_slip(source: Model, m: Model, time: float, y: Floats) -> None:

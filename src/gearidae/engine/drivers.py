@@ -9,6 +9,7 @@ from importlib import import_module
 from itertools import islice
 from types import ModuleType
 
+from gearidae.engine.beside import LOOP, compile_side_by_side
 from gearidae.engine.compiling import FUNCTIONS, HOW_LONG, SOLVER, compiling, make_part_ready
 from gearidae.engine.integrate.driver import Block
 from gearidae.engine.setup.problem import Problem
@@ -53,6 +54,7 @@ def native_formulas(method: str) -> str:
 
     for way in (ADAMS, BDF) if method == "auto" else (BDF,):
         with _solver_compiling():
+            compile_side_by_side((SOLVER, LOOP))
             failed = failure(way)
         if not failed:
             return way

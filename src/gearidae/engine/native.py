@@ -30,7 +30,7 @@ from gearidae.engine.integrate.driver import (
 )
 from gearidae.engine.integrate.roots import SHARPNESS, Arrays, Stepper, state_for_sample
 from gearidae.engine.model.addresses import model_at
-from gearidae.engine.model.state import Floats, Model
+from gearidae.engine.model.state import MOTION, Floats, Model
 from gearidae.engine.motion.static_solve import fold_gap
 from gearidae.engine.setup.problem import Problem
 from gearidae.engine.step import advance
@@ -50,6 +50,12 @@ def state_at_sample(place: int, arrays: Arrays, t: float) -> None:
     m = model_at(place)
     s = Stepper(arrays.handles, m, arrays.y, arrays.yp, arrays.dky, arrays.spare, arrays.clock)
     state_for_sample(s, t)
+
+
+def prepare_loop() -> None:
+    """Compile the loop over steps and what IDA calls in a motion, or take them from the cache."""
+    advance.prepare(0, Arrays(np.zeros(HANDLES, np.int64), *np.zeros((5, 1))), Output.empty(1), 1)  # type: ignore[attr-defined]
+    callbacks(MOTION, False)
 
 
 def _next_budget(budget: int, seconds: float) -> int:
@@ -106,28 +112,28 @@ def run(
     """
     m = problem.prepare(rtol, total, as_ida=as_ida)
     s = make_arrays(problem, m, as_ida)
-    out = Output.empty(len(problem.columns))
     if resume is not None:
         s.clock[0] = problem.restore(resume, s.y)
-    if total > 0 and m.state.progress.next_sample == 0:
-        if reader is not None and reader.sample == 0:
-            reader.read(problem, float(s.clock[0]), lambda: s.y)
-        observe_at(problem.addresses.place, float(s.clock[0]), s.y, out.rows[0])
-        m.work.driver.rows = m.state.progress.next_sample = 1
     place = problem.addresses.place
     unknowns = s.y.size
     if m.scene.nodes > 0 and not as_ida:
         unknowns = _weigh_motion(m)
     functions = callbacks(unknowns, bool(m.scene.nodes > 0), as_ida)
     places = Places(sun.places(), sun.newton_places())
-    try:
-        vectors = (s.y, s.yp, s.dky)
-        if open_solver(s.handles, place, functions, places, vectors, CONVERGENCE_FAILURES_HIGH) != 0:
-            statistics.ending = Ending.SOLVER_FAILURE
-            return
-        yield from _blocks(problem, s, out, statistics, reader)
-    finally:
-        close_solver(s.handles)
+    with Output.lent(len(problem.columns)) as out:
+        if total > 0 and m.state.progress.next_sample == 0:
+            if reader is not None and reader.sample == 0:
+                reader.read(problem, float(s.clock[0]), lambda: s.y)
+            observe_at(place, float(s.clock[0]), s.y, out.rows[0])
+            m.work.driver.rows = m.state.progress.next_sample = 1
+        try:
+            vectors = (s.y, s.yp, s.dky)
+            if open_solver(s.handles, place, functions, places, vectors, CONVERGENCE_FAILURES_HIGH) != 0:
+                statistics.ending = Ending.SOLVER_FAILURE
+                return
+            yield from _blocks(problem, s, out, statistics, reader)
+        finally:
+            close_solver(s.handles)
 
 
 def _blocks(

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -86,6 +87,7 @@ class Geometry:
         return self.path_length / self.base_pitch
 
 
+@lru_cache(maxsize=64)
 def mesh_geometry(base_radius: float, pinion_teeth: int, gear_teeth: int, pressure_angle: float) -> Geometry:
     """Lay out a pair of standard involute gears and check that it can run.
 

@@ -63,6 +63,22 @@ def compile() -> None:  # noqa: A001
     >>> import gearidae as gd
     >>> gd.compile()  # doctest: +SKIP
     """
+    from gearidae.engine.beside import (
+        LOOP,
+        compile_side_by_side,
+    )  # what reads results does without the engine
+    from gearidae.engine.compiling import (
+        ELASTIC,
+        EXPOSURES,
+        FRICTION,
+        IMPACTS,
+        POPULATION,
+        SOLVER,
+        compiling,
+    )
+
+    with compiling("the engine", "for a minute or two"):
+        compile_side_by_side((SOLVER, LOOP, ELASTIC, FRICTION, POPULATION, EXPOSURES, IMPACTS))
     for backend in ("auto", "sksundae"):
         for scene in scenes():
             simulate(scene, backend=backend)

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gearidae.archive.select import swept_dims
 from gearidae.archive.totals import imbalance_of
 
 if TYPE_CHECKING:
@@ -24,7 +23,9 @@ def log_imbalance(ds: xr.Dataset) -> None:
     ds : xarray.Dataset
         A single run, or a sweep, whose members get one warning together.
     """
-    if not swept_dims(ds):
+    if "residual" not in ds.variables or "residual_bound" not in ds.variables:
+        return
+    if not ds.variables["residual"].dims:
         out_by = imbalance_of(ds)
         if out_by > 1.0:
             log.warning(
@@ -32,8 +33,6 @@ def log_imbalance(ds: xr.Dataset) -> None:
                 "do not rely on it; if a smaller run.rtol does not bring it within, report the scene",
                 out_by,
             )
-        return
-    if "residual" not in ds or "residual_bound" not in ds:
         return
     out = np.abs(ds["residual"].values) > ds["residual_bound"].values
     if out.any():

@@ -21,6 +21,7 @@ too.
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import Annotated, Final, Literal, NamedTuple, Self
 
 import numpy as np
@@ -180,6 +181,7 @@ def _mean_shares(coating: Coating) -> dict[str, float]:
     return {"bare": bare, "coated": both, "mixed": max(first + second - 2.0 * both, 0.0)}
 
 
+@lru_cache(maxsize=64)
 def materials_of(coating: Coating, surface: Surface) -> tuple[Material, ...]:
     """List the materials of an interface.
 

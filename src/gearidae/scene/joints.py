@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import KW_ONLY, dataclass, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from gearidae.errors import SceneError
@@ -121,9 +122,13 @@ def pushes(drive: Drive) -> bool:
 
 def joints(scene: Scene) -> tuple[Joint, ...]:
     """List the joints of a scene that have a radius, or an axial load on dimples; none of a roller."""
-    gears, drive = scene.gears, scene.drive
-    if gears is None or drive is None:
+    if scene.gears is None or scene.drive is None:
         return ()
+    return _joints_of(scene.gears, scene.drive)
+
+
+@lru_cache(maxsize=64)
+def _joints_of(gears: Gears, drive: Drive) -> tuple[Joint, ...]:
     hubs = (_hub(gears, "pinion"), _hub(gears, "gear"))
     every = (*hubs, _pin(gears, drive))
     return tuple(

@@ -150,10 +150,20 @@ def _influence(scene: Scene, bounds: ContactBounds, length: float, deepest: floa
     """
     unit, reach = _extent(scene, bounds, deepest)
     modulus = contact_modulus(scene.surface.youngs_modulus, scene.surface.poisson_ratio)
+    return _coefficients(unit, reach, length, bounds.width, modulus, scene.surface.roughness, nodes)
+
+
+@lru_cache(maxsize=256)
+def _coefficients(
+    unit: float, reach: float, length: float, width: float, modulus: float, roughness: float, nodes: int
+) -> Floats:
+    """`_influence` of numbers; read-only, shared between runs as `_line_grid` is."""
     weights = place_nodes(reach / unit, nodes)[1]
-    work = weights[:, None] * _line_grid(reach * length, bounds.width, modulus, nodes).compliance
+    work = weights[:, None] * _line_grid(reach * length, width, modulus, nodes).compliance
     symmetric = 0.5 * (work + work.T) / weights[:, None]
-    return np.asarray(symmetric / (bounds.width * unit * scene.surface.roughness))
+    influence = np.asarray(symmetric / (width * unit * roughness))
+    influence.setflags(write=False)
+    return influence
 
 
 def _stretch(scene: Scene) -> float:

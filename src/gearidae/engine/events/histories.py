@@ -13,6 +13,7 @@ from gearidae.engine.events.law_switches import set_shaft_sides
 from gearidae.engine.events.mesh_marks import set_marks
 from gearidae.engine.events.sliding import begin_sliding
 from gearidae.engine.laws.statistical import set_joined
+from gearidae.engine.model.addresses import model_at
 from gearidae.engine.model.state import EMPTY, MATERIALS, PHASE, Floats, Model
 from gearidae.engine.pairs.orbit import follow_orbit
 from gearidae.engine.pairs.tooth_pairs import (
@@ -90,8 +91,9 @@ def init_history(m: Model, k: int, pair: int, gap: float, middle: float) -> None
 
 
 @compiled(makes_arrays=True)
-def begin(m: Model, t: float, y: Floats) -> None:
-    """Set the histories and mesh marks for a start at `y`."""
+def begin(place: int, t: float, y: Floats) -> None:
+    """Set the histories and mesh marks of the model at a place for a start at `y`."""
+    m = model_at(place)
     for coast in range(2):
         clear_history(m, coast)
     accept(m, t, y)

@@ -23,7 +23,7 @@ from typing import Final
 import numpy as np
 
 from gearidae.compiled import compiled, compiled_once
-from gearidae.engine.compiling import SOLVER
+from gearidae.engine.compiling import FRICTION
 from gearidae.engine.events.law_switches import law_guard
 from gearidae.engine.events.sliding import sliding_guard
 from gearidae.engine.model.state import DRIVE, LOAD, PHASE, Floats, Model, U
@@ -61,7 +61,7 @@ def _holds(t: float, m: Model, y: Floats) -> bool:
 _end_of_hold = bisected(_holds)
 
 
-@compiled_once(SOLVER)
+@compiled_once(FRICTION)
 def rest_until(m: Model, t: float, y: Floats, stop: float) -> tuple[float, bool]:
     """Find how long gears at rest stay there.
 

@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from gearidae.compiled import compiled, compiled_once
-from gearidae.engine.compiling import SOLVER
+from gearidae.engine.compiling import FRICTION
 from gearidae.engine.events.events import ROOT, STOP
 from gearidae.engine.events.rest_search import rest_until
 from gearidae.engine.events.stops import next_stop
@@ -28,16 +28,22 @@ _PASSES: Final = 2
 
 
 @compiled(inline=True)
+def _may_rest(m: Model) -> bool:
+    """Whether something holds gears: where nothing rubs, nothing of what follows has been compiled."""
+    return bool(m.state.hold != FREE and m.scene.friction.on != 0)
+
+
+@compiled(inline=True)
 def comes_to_rest(m: Model, t: float, y: Floats) -> bool:
     """Whether gears that have moved up to an accepted time are at rest from there on."""
-    if m.state.hold == FREE or y[W] != 0.0:
+    if not _may_rest(m) or y[W] != 0.0:
         return False
     if abs(y[V]) * m.rows[m.scene.error_weights_at + V] >= 1.0:
         return False
     return is_at_rest(m, t, y)
 
 
-@compiled_once(SOLVER)
+@compiled_once(FRICTION)
 def is_at_rest(m: Model, t: float, y: Floats) -> bool:
     """Whether nothing moves, or nothing by more than a tolerance."""
     if y[W] != 0.0 or m.scene.orbit != 0.0:  # the force of the drive carries teeth at rest along each other
@@ -93,13 +99,19 @@ def _step_to_equilibrium(m: Model, t: float, y: Floats, v: float) -> float:
 @compiled
 def begin_rest(m: Model, t: float, y: Floats) -> bool:
     """Whether gears are at rest at a start, where what is left of their motion is stopped."""
+    return _may_rest(m) and put_to_rest(m, t, y)
+
+
+@compiled_once(FRICTION)
+def put_to_rest(m: Model, t: float, y: Floats) -> bool:
+    """`begin_rest` of what something holds."""
     resting = is_at_rest(m, t, y)
     if resting and m.state.hold != AT_REST:
         _settle(m, t, y)
     return resting
 
 
-@compiled_once(SOLVER)
+@compiled_once(FRICTION)
 def rest_step(m: Model, t: float, y: Floats) -> tuple[float, int]:
     """Pass a time at rest.
 

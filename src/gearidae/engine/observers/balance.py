@@ -40,6 +40,7 @@ from gearidae.engine.events.mesh_marks import crossed_mark
 from gearidae.engine.events.pair_events import newly_stretched
 from gearidae.engine.events.sliding import dry_guard
 from gearidae.engine.laws.pairs import LOSING, book_losses_of_mesh, radius_power, stored_energy
+from gearidae.engine.model.addresses import model_at
 from gearidae.engine.model.state import DRIVE, LOAD, MATERIALS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.kinetic import energy_of_speeds, kinetic_energy
 from gearidae.engine.observers.adhesion_loss import joining_lag
@@ -67,8 +68,9 @@ ORDER: Final = 4
 
 
 @compiled
-def open_balance(m: Model, y: Floats) -> None:
+def open_balance(place: int, y: Floats) -> None:
     """Note the energies at the start; the kinetic energy counts as exchanged, as speeds have absolute tolerances."""
+    m = model_at(place)
     e = m.state.energy
     e.start_stored = stored_energy(m, y)[0]
     e.start_shafts = _stored_in_shafts(m, y)

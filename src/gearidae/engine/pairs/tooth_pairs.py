@@ -293,8 +293,13 @@ def acts(m: Model, pair: PairState) -> bool:
 @compiled
 def contact_length(m: Model, inside: float) -> float:
     """Length of a contact of given gap, ``sqrt(R / pb)`` with R the reduced radius of two involutes; 1 of a roller."""
-    pinion = m.scene.start_radius + inside
-    return math.sqrt(pinion - pinion * pinion * m.scene.sum_curvature)
+    return length_at(m.scene.start_radius + inside, m.scene.sum_curvature)
+
+
+@compiled(inline=True)
+def length_at(pinion: float, sum_curvature: float) -> float:
+    """`contact_length` where the pinion's involute has a radius of curvature."""
+    return math.sqrt(pinion - pinion * pinion * sum_curvature)
 
 
 @compiled

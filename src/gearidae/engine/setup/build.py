@@ -40,9 +40,9 @@ from gearidae.engine.model.state import (
 from gearidae.engine.motion.static_solve import settle_nodes
 from gearidae.engine.observers.balance import open_balance
 from gearidae.engine.observers.exposures.bins import ROWS
-from gearidae.engine.pairs.mesh_error import error_at
+from gearidae.engine.pairs.mesh_error import NO_ERROR, error_at
 from gearidae.engine.pairs.orbit import follow_orbit
-from gearidae.engine.pairs.tooth_pairs import contact_length
+from gearidae.engine.pairs.tooth_pairs import length_at
 from gearidae.engine.setup.build_contact import Nodes, add_attraction, add_contact, add_nodes, choose_model
 from gearidae.engine.setup.build_friction import add_friction
 from gearidae.engine.setup.build_population import add_population, population_rows
@@ -120,8 +120,10 @@ def make_problem(
             deeper = Nodes(max(2.0 * lowest - 4.0, -DEPTH_HIGH), count, problem.depth + 1)
             problem.deeper = lambda: make_problem(scene, deeper, *same, light_gap)
     elif may_deflect(scene):
-        bodies, light = scene.replace({"contact.bodies": "elastic"}), lowest + LIGHTER
-        problem.elastic = lambda: make_problem(bodies, None, *same, light)
+        light = lowest + LIGHTER
+        problem.elastic = lambda: make_problem(
+            scene.replace({"contact.bodies": "elastic"}), None, *same, light
+        )
     return problem
 
 
@@ -184,7 +186,7 @@ def _gear_problem(scene: GearScene, nodes: Nodes | None, begin: Start) -> Proble
     model.state.ageing.age[:] = start.rest_time / float(s.time_unit)
     if s.orbit != 0.0:  # asked here as well: a call from Python takes 50 us
         follow_orbit(model, 0.0)
-    error = error_at(model, u, phase)
+    error = error_at(model, u, phase) if s.has_error != 0 else NO_ERROR
     model.state.initial_lead = u + error.value
     skipped = {
         "static_error": int(not mesh.static_error),
@@ -266,8 +268,8 @@ def _gear_bounds(s: Record, scene: GearScene) -> ContactBounds:
     # the radius is largest where both radii of curvature are the same, if that is on the path
     ratio = float(s.contact_ratio)
     equal = 0.5 / float(s.sum_curvature) - float(s.start_radius)
-    blank = blank_model(s, np.zeros(0), 0)
-    lengths = [float(contact_length(blank, x)) for x in (0.0, ratio, min(max(equal, 0.0), ratio))]
+    first, curvature = float(s.start_radius), float(s.sum_curvature)
+    lengths = [length_at(first + x, curvature) for x in (0.0, ratio, min(max(equal, 0.0), ratio))]
     # the load pushing through the whole backlash, twice for good measure
     force = float(s.force_unit)
     energy = 2.0 * force * mesh.backlash
@@ -385,17 +387,17 @@ def _begun(m: Model, scene: Scene, motion: list[float], skipped: dict[str, int])
             make_part_ready(part)
     if s.nodes > 0:
         settle_nodes(m, 0.0, y)
-    begin(m, 0.0, y)
+    scale = m.tables[s.scale_at : s.scale_at + s.states]
+    problem = Problem(m, y, scale, columns_of(scene), _skipped(m, scene) | skipped)
+    begin(problem.addresses.place, 0.0, y)
     s.follow.balance, s.follow.extremes, s.follow.exposures = scene.run.balance, 1, s.bins > 0
     s.follow.gear = int(s.gear_inverse_mass > 0.0)
     s.follow.passages = int(scene.run.passages and s.follow.gear)
     s.follow.impacts = int(scene.run.impacts)
     s.follow.friction = int(scene.run.balance and s.friction.rubs != 0)
     if s.follow.balance != 0:
-        open_balance(m, y)
-    scale = m.tables[s.scale_at : s.scale_at + s.states]
-    columns = columns_of(scene)
-    return Problem(m, y, scale, columns, _skipped(m, scene) | skipped)
+        open_balance(problem.addresses.place, y)
+    return problem
 
 
 def _skipped(m: Model, scene: Scene) -> dict[str, int]:

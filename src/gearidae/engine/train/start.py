@@ -31,7 +31,7 @@ def begin_train(tm: TrainModel) -> None:
         set_law_window(m)
         e = mesh_state(tm, k, m, y, tm.own)
         m.state.initial_lead = tm.own[U] + e.value
-        begin(m, time, tm.own)
+        begin(mesh.place, time, tm.own)
         if m.scene.law_switches != 0:
             set_law_sides(m, time, tm.own)
         if watches_cutoff(m):
