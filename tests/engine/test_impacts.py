@@ -249,7 +249,7 @@ def test_a_resumed_run_has_the_same_rows(monkeypatch):
         if block.checkpoint is not None and rows.begin[-1] < block.time < rows.time[-1]
     ]
     assert len(inside) > 2
-    for place in inside[::3]:
+    for place in (inside[0], inside[len(inside) // 2]):
         resumed = [*whole[: place + 1], *blocks_from(whole[place].checkpoint)]
         np.testing.assert_array_equal(table(resumed), rows.table())
 

@@ -164,10 +164,10 @@ def test_simulated_torque_turns_and_a_smaller_one_sticks():
 
 def test_each_gear_of_a_design_has_a_starting_torque_of_its_own():
     """A run of its own turns at it, and sticks at the smaller one of the search."""
-    found = starting_torque(TEETH, "own", impacts=2, tolerance=0.5, seeds=3)
-    assert found.seed.values.tolist() == [7, 8, 9]
+    found = starting_torque(TEETH, "own", impacts=2, tolerance=0.5, seeds=2)
+    assert found.seed.values.tolist() == [7, 8]
     torques = found.starting_torque.values[0]
-    assert np.unique(torques).size == 3
+    assert np.unique(torques).size == 2
     assert float(found.quantiles.sel(quantile=0.5)[0]) == float(np.median(torques))
     alone = starting_torque(TEETH.replace({"mesh.pitch_error_seed": 8}), "own", impacts=2, tolerance=0.5)
     # each search begins at the static torque, which is that of teeth without errors of all gears
