@@ -63,10 +63,8 @@ def compile() -> None:  # noqa: A001
     >>> import gearidae as gd
     >>> gd.compile()  # doctest: +SKIP
     """
-    from gearidae.engine.beside import (
-        LOOP,
-        compile_side_by_side,
-    )  # what reads results does without the engine
+    # what reads results does without the engine
+    from gearidae.engine.beside import LOOP, compile_side_by_side
     from gearidae.engine.compiling import (
         ELASTIC,
         EXPOSURES,
