@@ -45,7 +45,7 @@ warm: $(VENV)/installed-dev
 # In one process, which compiles the solver once; two of these suites run side by side in `.ci/versions`.
 SHORT := -q \
     tests/engine/test_backends.py tests/engine/test_compiled_once.py tests/engine/test_indices.py tests/scene tests/archive/test_dataset.py tests/archive/test_netcdf.py \
-    tests/archive/test_lock.py tests/analysis/test_measured.py \
+    tests/archive/test_lock.py tests/monitor/test_measured.py \
     tests/cli/test_values.py tests/cli/test_session.py tests/plot/test_plot.py tests/report/test_report.py
 
 # Compiled with a check of every index, as this environment compiles the solver for nothing else. The warning is one that

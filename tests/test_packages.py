@@ -11,31 +11,19 @@ import pytest
 from gearidae.compiled.cache import COMPILED_PACKAGES
 
 SOURCE = Path(__file__).parents[1] / "src" / "gearidae"
-USES = (
-    "surfaces",
-    "plot",
-    "report",
-    "testing",
-    "studies._",
-    "studies.declared.",
-    "studies.life",
-    "studies.observation",
-    "studies.posterior",
-    "analysis.a",
-    "analysis.map_model",
-    "analysis.measured",
-    "analysis.record",
-    "analysis.ringing",
-    "analysis.spectra",
-)
-"""What nobody needs to run gears: pictures, studies, coating maps and assessments, lives, calibrations, height maps."""
+USES = ("monitor", "wear", "calibration", "surfaces")
+"""What nobody needs to run gears: coating maps and assessments, lives, calibrations, height maps."""
+SHOWS = ("plot", "report", "cli", "citing", "testing")
+"""What shows the core and its uses."""
+ANSWERS = ("studies._", "studies.declared.")
+LOADED = "print(*sorted(name for name in sys.modules if name.startswith('gearidae.')))"
+IMPORT = f"import sys, gearidae; {LOADED}"
 RUN = """
 import sys
 
 from gearidae.cli import main
 
-code = main(["run", "teodorescu2009_low_speed", "--set", "run.duration=1e-3", "-o", sys.argv[1]])
-print(code, *sorted(name for name in sys.modules if name.startswith("gearidae.")))
+assert main(["run", "teodorescu2009_low_speed", "--set", "run.duration=1e-3", "-o", sys.argv[1]]) == 0
 """
 
 
@@ -158,12 +146,54 @@ def test_a_circle_would_be_found(tmp_path):
         TopologicalSorter(arrows(tmp_path, "p")).prepare()
 
 
-def test_a_run_loads_none_of_what_others_use(tmp_path):
-    """In a process of its own, as the command line runs it; what it does need shows that the look sees modules."""
-    command = [sys.executable, "-c", RUN, str(tmp_path / "run.nc")]
-    code, *loaded = (
-        subprocess.run(command, capture_output=True, text=True, check=True).stdout.split("\n")[-2].split()
-    )
-    assert code == "0"
-    assert {"gearidae.scene", "gearidae.engine.backend", "gearidae.runs.simulation"} <= set(loaded)
-    assert [name for name in loaded if name.removeprefix("gearidae.").startswith(USES)] == []
+def importers(folder, package, upper, above):
+    """Files of the core that import a package of `upper`; those of `above` and public lists of names may."""
+    found = []
+    for path in folder.rglob("*.py"):
+        home = path.relative_to(folder).parts[0].removesuffix(".py")
+        if home in (*upper, *above) or (path.name == "__init__.py" and is_lazy(path)):
+            continue
+        found += [
+            f"{path.relative_to(folder)}: {name}"
+            for name in imported(path, package)
+            if name.partition(".")[0] in upper
+        ]
+    return found
+
+
+def is_lazy(path):
+    """Whether a package only names what it loads on first use."""
+    return "lazy_names(__name__" in path.read_text()
+
+
+def test_the_core_imports_none_of_its_uses():
+    """Nor does a file of one use import another: each can be left out without the others."""
+    assert importers(SOURCE, "gearidae", USES, SHOWS) == []
+    for use in USES:
+        others = tuple(other for other in USES if other != use)
+        assert importers(SOURCE / use, "gearidae", others, ()) == []
+
+
+def test_an_import_of_a_use_would_be_found(tmp_path):
+    """Also one inside a function; a public list of names and what shows the use may have it."""
+    (tmp_path / "core.py").write_text("def f():\n    from p.use import x")
+    (tmp_path / "show.py").write_text("from p.use import x")
+    (tmp_path / "__init__.py").write_text("from p.use import x\nlazy_names(__name__)")
+    assert importers(tmp_path, "p", ("use",), ("show",)) == ["core.py: use.x"]
+
+
+def modules_of(program, *arguments):
+    """Modules of the package that a process of its own has loaded."""
+    command = [sys.executable, "-c", program, *arguments]
+    lines = subprocess.run(command, capture_output=True, text=True, check=True).stdout.split("\n")
+    return [name.removeprefix("gearidae.") for name in lines[-2].split()]
+
+
+@pytest.mark.parametrize("program", [IMPORT, RUN + LOADED], ids=["import", "run"])
+def test_neither_an_import_nor_a_run_loads_a_use_of_the_core(program, tmp_path):
+    """As the command line runs it; what a run does need shows that the look sees modules."""
+    loaded = modules_of(program, str(tmp_path / "run.nc"))
+    if program != IMPORT:
+        assert {"scene", "engine.backend", "runs.simulation"} <= set(loaded)
+    assert [name for name in loaded if name.partition(".")[0] in (*USES, "plot", "report", "testing")] == []
+    assert [name for name in loaded if name.startswith(ANSWERS)] == []

@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from gearidae.analysis.verdict import outcomes as outcomes
     from gearidae.archive import open_archive as open_archive
     from gearidae.archive import save as save
-    from gearidae.archive.citing import cite as cite
     from gearidae.archive.concat import concat as concat
+    from gearidae.citing import cite as cite
     from gearidae.errors import GearidaeError as GearidaeError
     from gearidae.errors import Interrupted as Interrupted
     from gearidae.errors import SceneError as SceneError

@@ -107,7 +107,7 @@ def test_ctrl_c_keeps_the_runs_and_it_goes_on(folder, expected, monkeypatch, cap
 
 def test_numbers_with_uncertainties_and_conditions_reach_the_observation(folder):
     """Nothing is run: the posterior of the torque by a figure is left to the functions' own tests."""
-    from gearidae.studies.declared.calibrate import _observation
+    from gearidae.calibration.declared.calibrate import _observation
 
     rung = _observation("ring_frequency=5.2 kHz +- 0.1 kHz; mesh.backlash=0.2 um; drive.torque=5e-18")
     same = _observation("ring_frequency = 5.2 kHz \u00b1 0.1 kHz;drive.torque=5e-18;mesh.backlash = 0.2 um")

@@ -15,7 +15,7 @@ import xarray as xr
 
 import gearidae as gd
 from gearidae.cli import main
-from gearidae.studies import life_rates
+from gearidae.wear.lives import rates
 
 CASE = "teodorescu2009_low_speed"
 LAW = ["--law", "adhesion_work", "--parameter", "energy=1e-6"]
@@ -120,8 +120,8 @@ def test_ctrl_c_keeps_the_lives_that_are_done(folder, monkeypatch):
     done = endings.count("coverage")
     assert 1 <= done < 4
     whole, opened = [path.stem for path in kept.glob("*.nc")], []
-    real = life_rates.run_window
-    monkeypatch.setattr(life_rates, "run_window", lambda *a: opened.append(a) or real(*a))
+    real = rates.run_window
+    monkeypatch.setattr(rates, "run_window", lambda *a: opened.append(a) or real(*a))
     assert main([*command, "--resume", "-o", "cut.nc"]) == 0
     assert len(whole) >= done
     assert len(opened) < gd.studies.open_lives("cut.nc").windows.sum()  # lives that are done are read
@@ -135,6 +135,7 @@ PROGRAM = """
 import signal, sys
 
 from gearidae.cli import main
+from gearidae.wear.lives import rates
 
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it
 sys.exit(main(sys.argv[1:]))

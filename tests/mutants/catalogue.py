@@ -388,7 +388,7 @@ MUTANTS = (
         "analysis/impacts.py",
         "    return spacing if evident else 1.0",
         "    return 1.0",
-        ("analysis/test_bad_records.py",),
+        ("monitor/test_bad_records.py",),
     ),
     Mutant(
         "bands of a spectrum that add up their lines in place of the mean",

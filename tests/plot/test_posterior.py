@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 from scipy import stats
 
 import gearidae as gd
+from gearidae.calibration.posterior import LEVELS
 from gearidae.studies import Observation
-from gearidae.studies.posterior import LEVELS
 
 LOW = gd.preset("teodorescu2009_low_speed")
 

@@ -13,12 +13,12 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import gearidae as gd
-from gearidae.analysis.measured import read_signal
 from gearidae.archive import open_archive, unfinished
 from gearidae.archive.journal import Journal, journal_of
 from gearidae.cli import main
 from gearidae.engine import portable
 from gearidae.errors import SceneError
+from gearidae.monitor.measured import read_signal
 from gearidae.scene import Scene, dump_case
 
 CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from gearidae.analysis.fitting import RingSet
-from gearidae.analysis.map_model import AFTER, BEFORE, MapModel
+from gearidae.monitor.fitting import RingSet
+from gearidae.monitor.map_model import AFTER, BEFORE, MapModel
 
 FRACTIONS = np.linspace(0.5, 1.0, 1001)
 IMPACTS = 4

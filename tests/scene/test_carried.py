@@ -14,9 +14,9 @@ from scipy import stats
 import gearidae as gd
 from gearidae.analysis import read_signal
 from gearidae.analysis.signal import signals
+from gearidae.monitor.declared.coating_map import further_keys
 from gearidae.runs.sweep_plan import plan_sweep
 from gearidae.scene.carried import number_of, numbers_of
-from gearidae.studies.declared.coating_map import further_keys
 from gearidae.studies.distributions import read_distributions
 from gearidae.surfaces.height_map import height_map
 

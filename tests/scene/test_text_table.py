@@ -11,9 +11,9 @@ import pytest
 
 import gearidae as gd
 from gearidae.analysis import read_signal
+from gearidae.calibration.observation_files import read_observations
 from gearidae.scene import text_table
 from gearidae.scene.table_head import open_table
-from gearidae.studies.observation_files import read_observations
 from gearidae.surfaces import read_scan
 
 NUMBERS = np.array([[0.0, 1.5], [0.25, -2e-3], [0.5, 3.0]])

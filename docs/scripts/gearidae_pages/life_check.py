@@ -23,8 +23,8 @@ import xarray as xr
 import gearidae as gd
 from gearidae import engine
 from gearidae.scene import require_gears
-from gearidae.studies.life_coverage import coverage_of
-from gearidae.studies.life_window import Cycles, gained, window_scene, with_exposures
+from gearidae.wear.lives.coverage import coverage_of
+from gearidae.wear.lives.window import Cycles, gained, window_scene, with_exposures
 
 __all__ = ["BruteForce", "Comparison", "brute_force", "compared", "fast_life"]
 
@@ -45,7 +45,7 @@ class BruteForce:
     passages : ndarray, shape (n,)
         Of each tooth of the pinion.
     states : ndarray, shape (n, size)
-        Covered shares, as `gearidae.studies.life_coverage` has them.
+        Covered shares, as `gearidae.wear.lives.coverage` has them.
     sticks : bool
     """
 

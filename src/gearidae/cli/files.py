@@ -9,11 +9,11 @@ from pathlib import Path
 import xarray as xr
 
 import gearidae as gd
-from gearidae.archive.citing import cite
 from gearidae.archive.journal import file_of
 from gearidae.archive.rows import DIMS
 from gearidae.archive.select import is_roller, scene_of, swept_dims
 from gearidae.archive.target import whole_file
+from gearidae.citing import cite
 from gearidae.cli.codes import DONE
 from gearidae.cli.machine import archive_facts, print_json, product_facts
 from gearidae.cli.output import print_line, show_rows

@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gearidae.analysis.verdict import outcomes
-from gearidae.archive.citing import cite
 from gearidae.archive.journal import file_of
 from gearidae.archive.run_summary import summary_of
 from gearidae.archive.select import scene_of, swept_dims
 from gearidae.archive.tables import row_table
 from gearidae.archive.totals import energy_balance
+from gearidae.citing import cite
 from gearidae.cli.output import print_answer
 from gearidae.records import Impacts
 from gearidae.runs.kept_validity import validity_of

@@ -8,11 +8,11 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from gearidae.analysis.map_model import require_map
 from gearidae.drawing.style import label_axis, line_colour, line_style, line_width, new_axes, scale_for, tidy
+from gearidae.monitor.map_model import require_map
 
 if TYPE_CHECKING:
-    from gearidae.analysis.assessment import Assessment
+    from gearidae.monitor.assessment import Assessment
 
 _LATER = "0.6"
 

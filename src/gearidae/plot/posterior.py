@@ -13,10 +13,10 @@ from matplotlib.figure import Figure, SubFigure
 
 from gearidae.archive.dataset import dimension_names
 from gearidae.arrays import Floats
+from gearidae.calibration.declared.calibrate import calibrated_keys
 from gearidae.drawing.parameter_axis import parameter_axis
 from gearidae.drawing.picture import PictureAxes, new_picture
 from gearidae.drawing.style import POSITIVE, tidy
-from gearidae.studies.declared.calibrate import calibrated_keys
 
 _BINS: Final = 40
 """Bins of draws, along each key."""

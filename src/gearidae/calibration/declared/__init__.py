@@ -1,0 +1,1 @@
+"""The studies of calibrations and predictions, as in `gearidae.studies.declared`."""

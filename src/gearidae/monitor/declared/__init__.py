@@ -1,0 +1,1 @@
+"""The studies of coating maps, as in `gearidae.studies.declared`."""

@@ -1,0 +1,1 @@
+"""The studies of lives, as in `gearidae.studies.declared`."""
