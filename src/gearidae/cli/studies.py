@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
 
-import gearidae as gd
 from gearidae.cli.case import check_dask, default_output, read_scene
 from gearidae.cli.codes import DONE, UNFINISHED
 from gearidae.cli.machine import print_json, product_facts
@@ -13,7 +13,6 @@ from gearidae.cli.simulation import announce
 from gearidae.cli.tables import name_failures
 from gearidae.runs.executors import check_jobs
 from gearidae.studies.products import answer, kind_of
-from gearidae.studies.study import Call
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -22,15 +21,23 @@ if TYPE_CHECKING:
     from gearidae.studies.study import Study
 
 
-def run_study(study: Study, case: str, request: Request, call: Call) -> int:
+def run_study(
+    study: Study,
+    function: Callable[..., xr.Dataset],
+    case: str,
+    request: Request,
+    arguments: Mapping[str, Any],
+) -> int:
     """Run a study of a case, keep it, show its answer.
 
     Parameters
     ----------
     case : str
         Path of a case file, or name of a preset.
-    call : Call
-        From the command of the study.
+    function : callable
+        Of the study.
+    arguments : mapping of str to object
+        Of the function, from the command line.
 
     Returns
     -------
@@ -42,16 +49,15 @@ def run_study(study: Study, case: str, request: Request, call: Call) -> int:
     check_dask(request.dask, request.jobs)
     workers = check_jobs(request.jobs)
     scene = read_scene(case, request.settings or ())
-    function = getattr(gd.studies, study.run or study.kind)
-    words = "" if request.as_json else call.announcement
-    if not isinstance(words, str):
-        words = words(scene, workers if request.dask is None else None)
+    words = ""
+    if study.announcement is not None and not request.as_json:
+        words = study.announcement(scene, workers if request.dask is None else None, **arguments)
+    keys, members = ((), 0) if study.members is None else study.members(**arguments)
     announce(study.title, scene, words, target, resume=request.resume, overwrite=request.overwrite)
-    with request.executor(call.keys, call.members) as executor:
+    with request.executor(keys, members) as executor:
         ds = function(
             scene,
-            *call.arguments,
-            **call.options,
+            **arguments,
             executor=executor,
             jobs=workers,
             progress=not is_quiet(),

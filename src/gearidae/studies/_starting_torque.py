@@ -122,7 +122,7 @@ def starting_torque(
     impacts : int, optional
         Pitches to be turned, each with its mesh exit.
     lowest : float, optional
-        As for `static_starting_torque`.
+        Lowest torque to try [N m]; by default 0.001 of the drive's own.
     simulated : bool, optional
         Whether to simulate too.
     tolerance : float, optional

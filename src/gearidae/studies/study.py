@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -59,7 +59,7 @@ class Column:
 
 @dataclass(frozen=True, slots=True)
 class Option:
-    """How a parameter of a study's command is written, as the metadata of its annotation.
+    """How an option of a study's command is written, as the metadata of its annotation.
 
     Attributes
     ----------
@@ -77,27 +77,6 @@ class Option:
     repeatable: bool = False
     many: bool = False
     completes: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Call:
-    """A call of a study's function, as its command makes one.
-
-    Attributes
-    ----------
-    arguments, options
-        Of the function, after the scene.
-    announcement : str or callable
-        What will be run, in words; a callable gets the scene and the number of simultaneous runs (None on a cluster).
-    keys, members : optional
-        What differs between the members of an ensemble, and how many they are.
-    """
-
-    arguments: tuple[Any, ...]
-    options: Mapping[str, Any] = field(default_factory=dict)
-    announcement: str | Callable[[Scene, int | None], str] = ""
-    keys: Mapping[str, Any] | Sequence[str] = ()
-    members: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,7 +127,15 @@ class Study:
     title, suffix : str, optional
         What the command calls it, and the end of the name of its file.
     command : callable, optional
-        Makes the `Call` of the options on the command line, its keyword arguments.
+        Makes arguments of the function from what is written otherwise on the command line: its parameters are options.
+    options : tuple of str, optional
+        Parameters of the function that are options as they are: their types, defaults and words are those of the
+        function. ``life.fraction`` is a parameter of `gearidae.studies.life`.
+    announcement : callable, optional
+        Says what will be run, from the scene, the number of simultaneous runs (None on a cluster) and the arguments of
+        the function as keywords. A study with it has a command.
+    members : callable, optional
+        Of an ensemble, the keys in which its members differ and their number, from the arguments as keywords.
     examples : tuple of str, optional
         Command lines.
     member_columns : tuple of str, optional
@@ -170,7 +157,10 @@ class Study:
     run: str = ""
     title: str = ""
     suffix: str = ""
-    command: Callable[..., Call] | None = None
+    command: Callable[..., Mapping[str, Any]] = dict
+    options: tuple[str, ...] = ()
+    announcement: Callable[..., str] | None = None
+    members: Callable[..., tuple[Iterable[str], int]] | None = None
     examples: tuple[str, ...] = ()
     member_columns: tuple[str, ...] = ()
     rows_are_drawn: bool = False

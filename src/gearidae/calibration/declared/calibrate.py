@@ -31,7 +31,7 @@ from gearidae.scene.quantity import whole
 from gearidae.studies.declared.ensemble import figure_names
 from gearidae.studies.distributions import read_distributions
 from gearidae.studies.products import open_posterior
-from gearidae.studies.study import Call, Option, Picture, Rows, Study
+from gearidae.studies.study import Option, Picture, Rows, Study
 
 if TYPE_CHECKING:
     from gearidae.progress import SweepProgress
@@ -55,7 +55,7 @@ def calibrate(
     priors: Mapping[str, Any],
     observations: Sequence[Observation],
     *,
-    method: str = "auto",
+    method: Literal["auto", "grid", "emcee"] = "auto",
     points: int = 41,
     steps: int = 500,
     seed: int = 0,
@@ -77,9 +77,9 @@ def calibrate(
     points : int, optional
         Cells a key of the grid, which spans 99.96 % of the prior.
     steps : int, optional
-        Of each of emcee's walkers, of which there are 16, or four a key; the first quarter is not kept.
+        Steps of each of emcee's walkers, of which there are 16, or four a key; the first quarter is not kept.
     seed : int, optional
-        Of emcee.
+        Seed of emcee.
     **options
         ``executor``, ``jobs``, ``backend``, ``progress``, ``archive``, ``overwrite`` and ``resume``, as for
         `gearidae.sweep`. With ``archive``, finished runs are kept beside it until the posterior is written.
@@ -269,7 +269,7 @@ def calibrated_keys(posterior: xr.Dataset) -> tuple[str, ...]:
     raise SceneError("posterior", type(posterior).__name__, "must be a posterior, from studies.calibrate")
 
 
-def _call(
+def _written(
     *,
     vary: Annotated[
         list[str],
@@ -288,25 +288,25 @@ def _call(
         ),
     ] = None,
     observations: Annotated[Path | None, Option("File with more of them: .toml or .csv.")] = None,
-    method: Annotated[
-        Literal["auto", "grid", "emcee"], Option("By default a grid for up to two keys, else emcee.")
-    ] = "auto",
-    points: Annotated[int, Option("Cells a key of the grid.")] = 41,
-    steps: Annotated[int, Option("Steps of each of emcee's walkers.")] = 500,
-    seed: Annotated[int, Option("Seed of emcee.")] = 0,
-) -> Call:
+) -> dict[str, Any]:
     priors = texts(vary, "--vary", "coating.sam_fraction=uniform(0.4, 0.7)")
     listed = [_observation(text) for text in seen or []]
     listed += [] if observations is None else read_observations(observations)
     if not listed:
         raise SceneError("--seen", "(missing)", f"give what was observed, {_EXAMPLE}, or --observations FILE")
-    return Call(
-        (priors, listed),
-        {"method": method, "points": points, "steps": steps, "seed": seed},
-        f"{' and '.join(priors)} from {len(listed)} observation{'s' if len(listed) > 1 else ''}",
-        priors,
-        len(listed) * points,
-    )
+    return {"priors": priors, "observations": listed}
+
+
+def _announced(
+    _: Scene,
+    __: int | None,
+    *,
+    priors: Mapping[str, Any],
+    observations: Sequence[Observation],
+    **___: Any,
+) -> str:
+    count = len(observations)
+    return f"{' and '.join(priors)} from {count} observation{'s' if count > 1 else ''}"
 
 
 def _observation(text: str) -> Observation:
@@ -372,7 +372,10 @@ STUDY = Study(
     maker="calibrate",
     title="Posterior",
     run="calibrate",
-    command=_call,
+    command=_written,
+    options=("method", "points", "steps", "seed"),
+    announcement=_announced,
+    members=lambda priors, observations, points, **_: (priors, len(observations) * points),
     examples=(
         'gearidae calibrate mine.toml --vary "coating.sam_fraction=uniform(0.4, 0.7)" --seen sticks=true',
         'gearidae calibrate mine.toml --vary "drive.torque=normal(4.5e-18, 3e-19)" --observations seen.csv -o known.nc',

@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Unpack
+from typing import TYPE_CHECKING, Annotated, Any, Unpack
 
 import numpy as np
 import xarray as xr
@@ -22,7 +22,7 @@ from gearidae.studies.declared import ensemble
 from gearidae.studies.design import check_design
 from gearidae.studies.members import along_members, member_plan
 from gearidae.studies.products import open_posterior
-from gearidae.studies.study import Call, Option
+from gearidae.studies.study import Option
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -47,7 +47,7 @@ def predict(
     size : int
         Number of members.
     seed : int, optional
-        Of the draws.
+        Seed of the draws.
     **options
         ``executor``, ``jobs``, ``backend``, ``progress``, ``archive``, ``overwrite`` and ``resume``, as for
         `gearidae.sweep`.
@@ -117,16 +117,12 @@ def posterior_draws(posterior: xr.Dataset, size: int, seed: int = 0) -> dict[str
     return values
 
 
-def _call(
-    *,
-    posterior: Annotated[Path, Option("Posterior, from gearidae calibrate.")],
-    size: Annotated[int, Option("Number of runs.")],
-    seed: Annotated[int, Option("Seed of the draws.")] = 0,
-) -> Call:
-    known = open_posterior(posterior)
-    keys = calibrated_keys(known)
-    words = f"{size} runs, {' and '.join(keys)} drawn from the posterior"
-    return Call((known, size), {"seed": seed}, words, keys, size)
+def _written(*, posterior: Annotated[Path, Option("Posterior, from gearidae calibrate.")]) -> dict[str, Any]:
+    return {"posterior": open_posterior(posterior)}
+
+
+def _announced(_: Scene, __: int | None, *, posterior: xr.Dataset, size: int, **___: Any) -> str:
+    return f"{size} runs, {' and '.join(calibrated_keys(posterior))} drawn from the posterior"
 
 
 STUDY = replace(
@@ -134,6 +130,9 @@ STUDY = replace(
     title="Prediction",
     suffix="predicted",
     run="predict",
-    command=_call,
+    command=_written,
+    options=("size", "seed"),
+    announcement=_announced,
+    members=lambda posterior, size, **_: (calibrated_keys(posterior), size),
     examples=("gearidae predict mine.toml --posterior known.nc --size 64 --set drive.torque=6e-18",),
 )

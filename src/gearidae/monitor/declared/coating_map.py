@@ -32,7 +32,7 @@ from gearidae.scene.pairs import sweep_values
 from gearidae.scene.prefixes import with_prefix
 from gearidae.studies.announcement import grid_words
 from gearidae.studies.specimens import gears_of
-from gearidae.studies.study import Call, Column, Option, Picture, Rows, Study
+from gearidae.studies.study import Column, Option, Picture, Rows, Study
 
 if TYPE_CHECKING:
     from gearidae.runs.run_cache import RunCache
@@ -300,7 +300,7 @@ def _attributes(scene: Scene, keys: tuple[str, ...], analysis: Mapping[Any, Any]
     }
 
 
-def _call(
+def _written(
     *,
     over: Annotated[
         list[str] | None,
@@ -310,28 +310,23 @@ def _call(
             completes="keys",
         ),
     ] = None,
-    seeds: Annotated[
-        int | None,
-        Option(
-            "Gears of each point, with seeds of errors of teeth and of asperities from the case's own on."
-        ),
-    ] = None,
-) -> Call:
+) -> dict[str, Any]:
     values = sweep_values([pair for pair in over or [] if pair.strip() != _TORQUE])
     fractions = values.pop(_FRACTION, FRACTIONS.tolist())
     usual_torques = any(pair.strip() == _TORQUE for pair in over or [])
     if usual_torques and values:
         raise SceneError("--over", _TORQUE, f"needs values beside {', '.join(values)}: {_TORQUE}=4e-18,5e-18")
-    further = _TORQUE if usual_torques else values
+    return {"sam_fraction": fractions, "over": _TORQUE if usual_torques else values}
 
-    def announcement(scene: Scene, workers: int | None) -> str:
-        gears: dict[str, list[Any]] = {}
-        if seeds is not None:
-            drawn = gears_of(scene, seeds)  # one key stands for all seeds of a gear
-            gears = {key: [gear[key] for gear in drawn] for key in list(drawn[0])[:1]}
-        return grid_words(scene, {_FRACTION: fractions} | further_keys(scene, further) | gears, workers)
 
-    return Call((fractions,), {"over": further, "seeds": seeds}, announcement)
+def _announced(
+    scene: Scene, workers: int | None, *, sam_fraction: list[Any], over: object, seeds: int | None
+) -> str:
+    gears: dict[str, list[Any]] = {}
+    if seeds is not None:
+        drawn = gears_of(scene, seeds)  # one key stands for all seeds of a gear
+        gears = {key: [gear[key] for gear in drawn] for key in list(drawn[0])[:1]}
+    return grid_words(scene, {_FRACTION: sam_fraction} | further_keys(scene, over) | gears, workers)
 
 
 def _sentence(ds: xr.Dataset) -> str:
@@ -381,7 +376,9 @@ STUDY = Study(
     words="coating map",
     maker="coating-map",
     title="Map",
-    command=_call,
+    command=_written,
+    options=("seeds",),
+    announcement=_announced,
     examples=("gearidae coating-map mine.toml -o map.nc",),
     columns={
         "characteristic_frequency": Column(("sam_fraction",), "Hz", "frequency of the first impact response"),

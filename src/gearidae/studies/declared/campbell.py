@@ -25,7 +25,7 @@ from gearidae.runs.sweeping import run_plan
 from gearidae.scene import GearScene, require_gears
 from gearidae.scene.pairs import quantities, sweep_values
 from gearidae.scene.quantity import whole
-from gearidae.studies.study import Call, Column, Option, Picture, Rows, Study
+from gearidae.studies.study import Column, Option, Picture, Rows, Study
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -67,7 +67,7 @@ def campbell(
     variable : str, optional
         Sampled variable whose spectra are taken.
     multiples : sequence of int, optional
-        Of the mesh frequency, whose crossings are looked for.
+        Multiples of the mesh frequency whose crossings with that of the contact are looked for.
     **options
         ``executor``, ``jobs``, ``backend``, ``progress``, ``archive``, ``overwrite`` and ``resume``, as for
         `gearidae.sweep`.
@@ -236,19 +236,17 @@ def _crossing(speeds: Floats, mesh: Floats, contact: Floats) -> float:
     return math.nan
 
 
-def _call(
+def _written(
     *,
     speeds: Annotated[
         str, Option("Speeds of the pinion: '4:12:0.5 rad/s', or '40 rpm,60 rpm'; numbers are rad/s.")
     ],
-    variable: Annotated[str, Option("Sampled variable whose spectra are taken.")] = "gear_speed",
-    multiples: Annotated[
-        list[int] | None, Option("Multiples of the mesh frequency. Default: 1 2 3 4.", many=True)
-    ] = None,
-) -> Call:
-    held = _speeds(sweep_values([f"speeds={speeds}"])["speeds"])
-    words = f"{held.size} runs, speeds of the pinion from {held[0]:.4g} to {held[-1]:.4g} rad/s"
-    return Call((held.tolist(),), {"variable": variable, "multiples": multiples or _MULTIPLES}, words)
+) -> dict[str, Any]:
+    return {"speeds": _speeds(sweep_values([f"speeds={speeds}"])["speeds"]).tolist()}
+
+
+def _announced(_: Scene, __: int | None, *, speeds: Sequence[float], **___: Any) -> str:
+    return f"{len(speeds)} runs, speeds of the pinion from {speeds[0]:.4g} to {speeds[-1]:.4g} rad/s"
 
 
 def _sentence(ds: xr.Dataset) -> str:
@@ -355,7 +353,9 @@ STUDY = Study(
     words="Campbell diagram",
     maker="campbell",
     title="Campbell diagram",
-    command=_call,
+    command=_written,
+    options=("variable", "multiples"),
+    announcement=_announced,
     examples=("gearidae campbell low_speed --speeds '4:12:0.5 rad/s'",),
     columns={
         "speed": Column(_SPEED, "rad s-1", "speed of the pinion that is held"),

@@ -23,7 +23,7 @@ from gearidae.runs.execution import RunOptions, prepared
 from gearidae.runs.sweep_plan import SweepPlan
 from gearidae.runs.sweeping import run_plan
 from gearidae.scene.pairs import quantity
-from gearidae.studies.study import Call, Column, Option, Picture, Rows, Study
+from gearidae.studies.study import Column, Option, Picture, Rows, Study
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -249,21 +249,13 @@ def judge(values: Floats, ladder: Floats, target: float) -> dict[str, Any]:
     return result | {"verdict": _CHAOTIC, "starts": math.ceil((spread / target) ** 2)}
 
 
-def _call(
-    *,
-    of: Annotated[
-        list[str] | None,
-        Option(
-            "Quantities: adhesion_loss stick_time. Default: speeds, force, angle, adhesion loss.", many=True
-        ),
-    ] = None,
-    target: Annotated[str, Option("Relative error that is wanted.")] = "0.1 %",
-) -> Call:
-    error = quantity("--target", target, "1")
+def _written(*, target: Annotated[str, Option("Relative error that is wanted.")] = "0.1 %") -> dict[str, Any]:
+    return {"target": quantity("--target", target, "1")}
+
+
+def _announced(*_: Any, **__: Any) -> str:
     runs = len(LADDER) * (len(_TOLERANCES) + len(_GAPS))
-    return Call(
-        (of, error), announcement=f"{runs} runs, with tolerances from {LADDER[0]:g} to {LADDER[-1]:g}"
-    )
+    return f"{runs} runs, with tolerances from {LADDER[0]:g} to {LADDER[-1]:g}"
 
 
 def _sentence(ds: xr.Dataset) -> str:
@@ -363,7 +355,9 @@ STUDY = Study(
     words="study of convergence",
     maker="convergence",
     title="Convergence",
-    command=_call,
+    command=_written,
+    options=("of",),
+    announcement=_announced,
     examples=('gearidae convergence mine.toml --of adhesion_loss stick_time --target "0.1 %"',),
     columns={
         "figure": Column(("figure",), "1", "quantity"),

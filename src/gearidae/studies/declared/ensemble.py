@@ -9,7 +9,7 @@ import json
 import logging
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any, Final, Unpack
+from typing import TYPE_CHECKING, Any, Final, Literal, Unpack
 
 import numpy as np
 import xarray as xr
@@ -29,9 +29,8 @@ from gearidae.studies.announcement import draw_words
 from gearidae.studies.design import NO_INDEX, Design, check_design, pick_freeze_design, plain_design
 from gearidae.studies.indices import FEWEST, indices_of
 from gearidae.studies.members import along_members, count_rows, draw_members
-from gearidae.studies.options import VARY_EXAMPLE, Seed, Vary
-from gearidae.studies.options import Design as DesignOption
-from gearidae.studies.study import Call, Column, Option, Picture, Rows, Study
+from gearidae.studies.options import VARY_EXAMPLE, Vary
+from gearidae.studies.study import Column, Picture, Rows, Study
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -54,7 +53,7 @@ def ensemble(
     scene: Scene,
     vary: Mapping[str, Any],
     size: int,
-    design: str = "sobol",
+    design: Literal["sobol", "random"] = "sobol",
     *,
     seed: int = 0,
     of: str | None = None,
@@ -79,7 +78,7 @@ def ensemble(
     design : {"sobol", "random"}, optional
         Scrambled Sobol' points, which cover the distributions more evenly, or pseudo-random ones.
     seed : int, optional
-        Of the design; the same seed draws the same members.
+        Seed of the design; the same one draws the same members.
     of : str, optional
         Figure whose Sobol' indices are wanted: ``sticks`` (0 or 1), ``impacts``, or one of the extremes, such as
         ``min_gear_speed`` or ``largest_mesh_force``. Seeds have no index: they are no continuous input. What the
@@ -197,27 +196,24 @@ def _check(ds: xr.Dataset) -> None:
         raise SceneError("dataset", type(ds).__name__, "is no ensemble of runs; make one with ensemble")
 
 
-def _call(
+def _written(*, vary: Vary) -> dict[str, Any]:
+    return {"vary": read_texts(vary, "--vary", VARY_EXAMPLE)}
+
+
+def _announced(
+    scene: Scene,
+    workers: int | None,
     *,
-    vary: Vary,
-    size: Annotated[int, Option("Number of members; with --of, of rows, a power of 2.")],
-    of: Annotated[
-        str | None, Option("Figure whose Sobol indices are wanted: sticks, min_gear_speed and so on.")
-    ] = None,
-    design: DesignOption = "sobol",
-    seed: Seed = 0,
-) -> Call:
-    keys = read_texts(vary, "--vary", VARY_EXAMPLE)
+    vary: Mapping[str, str],
+    size: int,
+    of: str | None,
+    design: str,
+    seed: int,
+) -> str:
     check_design(size, design, seed, indices=of is not None)
-    drawn_keys = [key for key in keys if key not in SEED_KEYS]
+    drawn_keys = [key for key in vary if key not in SEED_KEYS]
     runs = size if of is None else size * (len(drawn_keys) + 2)  # the matrices of the Sobol' indices
-    return Call(
-        (keys, size),
-        {"of": of, "design": design, "seed": seed},
-        lambda scene, workers: draw_words(scene, keys, runs, workers),
-        keys,
-        size,
-    )
+    return draw_words(scene, vary, runs, workers)
 
 
 def _sentence(ds: xr.Dataset) -> str:
@@ -341,7 +337,10 @@ STUDY = Study(
     words="ensemble of runs",
     maker="ensemble",
     title="Ensemble",
-    command=_call,
+    command=_written,
+    options=("size", "of", "design", "seed"),
+    announcement=_announced,
+    members=lambda vary, size, **_: (vary, size),
     examples=(
         'gearidae ensemble mine.toml --vary "surface.asperity_radius=normal(450 nm, 20 nm)" --size 256',
         'gearidae ensemble mine.toml --vary "coating.sam_fraction=uniform(0.4, 0.8)" --size 256 --of min_gear_speed',

@@ -20,7 +20,7 @@ from gearidae.scene import require_gears
 from gearidae.scene.pairs import sweep_values
 from gearidae.studies.announcement import grid_words
 from gearidae.studies.members import STICKS
-from gearidae.studies.study import Call, Column, Option, Picture, Rows, Study
+from gearidae.studies.study import Column, Option, Picture, Rows, Study
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -130,7 +130,7 @@ def _check(ds: xr.Dataset) -> None:
         raise SceneError("plot", "outcome_map", "needs an operating map, from studies.operating_map")
 
 
-def _call(
+def _written(
     *,
     over: Annotated[
         list[str],
@@ -140,12 +140,12 @@ def _call(
             completes="keys",
         ),
     ],
-) -> Call:
+) -> dict[str, Any]:
     values = sweep_values(over)
     if len(values) != 2:
         example = "drive.torque=4e-18,5e-18 coating.sam_fraction=1:0.4:-0.1"
         raise SceneError("--over", " ".join(over), f"must be two keys and their values: {example}")
-    return Call((values,), announcement=lambda scene, workers: grid_words(scene, values, workers))
+    return {"over": values}
 
 
 def _sentence(ds: xr.Dataset) -> str:
@@ -258,7 +258,8 @@ STUDY = Study(
     words="operating map",
     maker="operating-map",
     title="Operating map",
-    command=_call,
+    command=_written,
+    announcement=lambda scene, workers, over: grid_words(scene, over, workers),
     examples=(
         "gearidae operating-map mine.toml --over drive.torque=4e-18:5e-18:2e-19 coating.sam_fraction=1:0.4:-0.1",
     ),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Annotated, Final, Unpack
+from typing import TYPE_CHECKING, Annotated, Any, Final, Unpack
 
 import numpy as np
 import xarray as xr
@@ -18,7 +18,7 @@ from gearidae.runs.executors import side_by_side
 from gearidae.scene import GearScene, Scene
 from gearidae.scene.pairs import quantity
 from gearidae.scene.prefixes import with_prefix
-from gearidae.studies.study import Call, Column, Option, Picture, Rows, Study
+from gearidae.studies.study import Column, Option, Picture, Rows, Study
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -50,8 +50,8 @@ def pull_off(
         Gears or a roller, of which only radius, width and surfaces count. Asperities are drawn with
         every ``contact.roughness``.
     seeds : int or sequence of int, optional
-        In place of ``contact.seed``: numbers, or how many from ``contact.seed`` on. A number is the drive flank of the
-        pinion's first tooth, as `gearidae.population` draws it.
+        Number of drawn surfaces, from ``contact.seed`` on, or the seeds themselves. A seed draws the drive flank of the
+        pinion's first tooth, as in `gearidae.population`.
     load : float, optional
         Force that presses the pair [N]; by default that of the mean torque of the drive. A roller needs one.
     **options
@@ -153,15 +153,13 @@ def _load(scene: Scene, load: float | None) -> float:
     return float(load)
 
 
-def _call(
+def _written(
     *,
-    seeds: Annotated[int, Option("Number of drawn surfaces, from contact.seed on.")] = 100,
     load: Annotated[
         str | None, Option("Force that presses the pair, 1 uN. Default: of the drive's mean torque.")
     ] = None,
-) -> Call:
-    force = None if load is None else quantity("--load", load, "N")
-    return Call((seeds,), {"load": force}, f"{seeds} drawn pairs")
+) -> dict[str, Any]:
+    return {"load": None if load is None else quantity("--load", load, "N")}
 
 
 def _sentence(ds: xr.Dataset) -> str:
@@ -227,7 +225,9 @@ STUDY = Study(
     words="study of pull-off forces",
     maker="pull-off",
     title="Pull-off",
-    command=_call,
+    command=_written,
+    options=("seeds",),
+    announcement=lambda _, __, seeds, **___: f"{seeds} drawn pairs",
     examples=('gearidae pull-off mine.toml --seeds 1000 --load "1 uN"',),
     columns={
         "seed": Column(("seed",), "1", "seed of the asperities"),

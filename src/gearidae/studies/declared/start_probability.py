@@ -7,7 +7,7 @@ until it is written.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any, Final, Unpack
+from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, Unpack
 
 import numpy as np
 import xarray as xr
@@ -25,10 +25,9 @@ from gearidae.scene.prefixes import with_prefix
 from gearidae.studies.announcement import draw_words
 from gearidae.studies.design import check_design, plain_design
 from gearidae.studies.members import along_members, draw_members
-from gearidae.studies.options import VARY_EXAMPLE, Seed, Vary
-from gearidae.studies.options import Design as DesignOption
+from gearidae.studies.options import VARY_EXAMPLE, Vary
 from gearidae.studies.shares import check_confidence, wilson
-from gearidae.studies.study import Call, Column, Option, Picture, Rows, Study
+from gearidae.studies.study import Column, Option, Picture, Rows, Study
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -47,7 +46,7 @@ def start_probability(
     vary: Mapping[str, Any],
     size: int = _MEMBERS,
     by: Sequence[Any] | float | str | None = None,
-    design: str = "sobol",
+    design: Literal["sobol", "random"] = "sobol",
     *,
     seed: int = 0,
     confidence: float = 0.95,
@@ -71,9 +70,9 @@ def start_probability(
         Times since the start of the run [s], or texts with a unit; by default the scene's ``run.duration``. The last
         one is how long the runs are.
     design : {"sobol", "random"}, optional
-        As for `ensemble`.
+        Scrambled Sobol' points, which cover the distributions more evenly, or pseudo-random ones.
     seed : int, optional
-        Of the design.
+        Seed of the design.
     confidence : float, optional
         Of the interval.
     **options
@@ -169,24 +168,29 @@ def _dataset(scene: Scene, base: Scene, runs: xr.Dataset, times: Floats, confide
     return STUDY.dataset(columns, attributes, percent=f"{100.0 * confidence:g}").assign_coords(kept)
 
 
-def _call(
+def _written(
     *,
     vary: Vary,
     by: Annotated[
         list[str] | None, Option("Times since the start, '2 ms' '5 ms'. Default: run.duration.", many=True)
     ] = None,
-    size: Annotated[int, Option("Number of members.")] = _MEMBERS,
-    design: DesignOption = "sobol",
-    seed: Seed = 0,
-) -> Call:
-    keys = read_texts(vary, "--vary", VARY_EXAMPLE)
+) -> dict[str, Any]:
+    return {"vary": read_texts(vary, "--vary", VARY_EXAMPLE), "by": by}
+
+
+def _announced(
+    scene: Scene,
+    workers: int | None,
+    *,
+    vary: Mapping[str, str],
+    by: Sequence[str] | None,
+    size: int,
+    design: str,
+    seed: int,
+) -> str:
     check_design(size, design, seed, indices=False)
-
-    def announced(scene: Scene, workers: int | None) -> str:
-        gears = require_gears(scene)
-        return draw_words(_followed(gears, _times(gears, by)), keys, size, workers)
-
-    return Call((keys, size, by, design), {"seed": seed}, announced, keys, size)
+    gears = require_gears(scene)
+    return draw_words(_followed(gears, _times(gears, by)), vary, size, workers)
 
 
 def _sentence(ds: xr.Dataset) -> str:
@@ -277,7 +281,10 @@ STUDY = Study(
     words="study of starts",
     maker="start-probability",
     title="Starts",
-    command=_call,
+    command=_written,
+    options=("size", "design", "seed"),
+    announcement=_announced,
+    members=lambda vary, size, **_: (vary, size),
     examples=(
         "gearidae start-probability start_up --vary 'load.torque=normal(30 pN m, 4 pN m)' --by '3 ms' '5 ms'",
     ),

@@ -18,7 +18,7 @@ from gearidae.archive.variables import SAM_FRACTION
 from gearidae.errors import SceneError
 from gearidae.scene.pairs import sweep_values
 from gearidae.scene.prefixes import with_prefix
-from gearidae.studies.study import Call, Column, Option, Picture, Rows, Study
+from gearidae.studies.study import Column, Option, Picture, Rows, Study
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,47 +38,34 @@ _ALONG: Final = ("sam_fraction",)
 _AFTER: Final = ("rest_time",)
 
 
-def _call(
+def _written(
     *,
     over: Annotated[
         str | None,
         Option("SAM fractions, coating.sam_fraction=1:0.4:-0.1. Default: the coating of the case as it is."),
     ] = None,
-    impacts: Annotated[int, Option("Pitches to be turned, each with its mesh exit.")] = 3,
-    lowest: Annotated[
-        float | None, Option("Lowest torque to try in N m. Default: 0.001 of the drive's own.")
-    ] = None,
-    tolerance: Annotated[float, Option("Relative width at which the search ends.")] = 0.1,
-    seeds: Annotated[
-        int | None,
-        Option(
-            "Gears, with seeds of asperities and of errors of teeth from the case's own on. Default of asperities: 20."
-        ),
-    ] = None,
     rest: Annotated[
         str | None, Option("Times at rest before the start, 1 ms,1 s: of hubs and a pin that age.")
     ] = None,
-) -> Call:
+) -> dict[str, Any]:
     fractions: Any = "own"
-    times = None if rest is None else sweep_values([f"{_REST}={rest}"])[_REST]
     if over is not None:
         ((key, fractions),) = sweep_values([over]).items()
         if key != _FRACTION:
             raise SceneError("--over", over, f"must be {_FRACTION} and its values; set other keys by --set")
+    times = None if rest is None else sweep_values([f"{_REST}={rest}"])[_REST]
+    return {"sam_fraction": fractions, "rest_time": times}
 
-    def announcement(scene: Scene, _: int | None) -> str:
-        coatings = "own coating" if fractions == "own" else f"{len(fractions)} fractions of the coating"
-        coatings += "" if times is None else f", {len(times)} times at rest"
-        if not scene.contact.is_discrete:
-            each = "" if seeds is None else f"{seeds} gears, "
-            return f"{each}{coatings}; one torque is tried after the other"
-        return (
-            f"{seeds or SEEDS} gears, {coatings}; each is run several times, with a torque that rises slowly"
-        )
 
-    options: dict[str, Any] = {"impacts": impacts, "lowest": lowest, "tolerance": tolerance, "seeds": seeds}
-    options["rest_time"] = times
-    return Call((fractions,), options, announcement)
+def _announced(
+    scene: Scene, _: int | None, *, sam_fraction: Any, rest_time: Any, seeds: int | None, **__: Any
+) -> str:
+    coatings = "own coating" if sam_fraction == "own" else f"{len(sam_fraction)} fractions of the coating"
+    coatings += "" if rest_time is None else f", {len(rest_time)} times at rest"
+    if not scene.contact.is_discrete:
+        each = "" if seeds is None else f"{seeds} gears, "
+        return f"{each}{coatings}; one torque is tried after the other"
+    return f"{seeds or SEEDS} gears, {coatings}; each is run several times, with a torque that rises slowly"
 
 
 def _train_sentence(ds: xr.Dataset) -> str:
@@ -554,7 +541,9 @@ STUDY = Study(
     words="study of starting torques",
     maker="starting-torque",
     title="Starting torque",
-    command=_call,
+    command=_written,
+    options=("impacts", "lowest", "tolerance", "seeds"),
+    announcement=_announced,
     examples=(
         "gearidae starting-torque mine.toml",
         "gearidae starting-torque mine.toml --over coating.sam_fraction=1:0.4:-0.1 --impacts 1",

@@ -26,7 +26,7 @@ from gearidae.scene.pairs import sweep_values
 from gearidae.scene.quantity import number, whole
 from gearidae.studies.bracket import bracket
 from gearidae.studies.specimens import gears_of, seed_of, seeds_that_draw
-from gearidae.studies.study import Call, Column, Option, Picture, Rows, Study
+from gearidae.studies.study import Column, Option, Picture, Rows, Study
 from gearidae.studies.threshold_run import ThresholdRun, run_until, value_of
 
 if TYPE_CHECKING:
@@ -363,28 +363,25 @@ def _window(scene: GearScene, exits: int) -> float:
     return _PATIENCE * (exits + 1) * 2.0 * math.pi / (scene.gears.gear_teeth * waiting_speed(scene))
 
 
-def _call(
+def _written(
     *,
     over: Annotated[
         str, Option("Key and two values: the gear sticks at one of them, coating.sam_fraction=0.4,0.7.")
     ],
-    exits: Annotated[int, Option("Mesh exits to wait for.")] = 100,
-    seeds: Annotated[
-        int | None,
-        Option(
-            "Gears of the design, with seeds of errors of teeth and of asperities from the case's own on."
-        ),
-    ] = None,
-) -> Call:
+) -> dict[str, Any]:
     ((key, ends),) = sweep_values([over]).items()
     if len(ends) != 2 or ends[0] == ends[1]:
         raise SceneError(
             "--over", over, f"needs two different values, at one of which the gear sticks: {key}=0.4,0.7"
         )
-    words = f"{key} between {ends[0]} and {ends[1]}, for up to {exits} mesh exits"
-    if seeds is not None:
-        words += f", of {seeds} gears"
-    return Call((key, (ends[0], ends[1]), exits), {"seeds": seeds}, announcement=words)
+    return {"over": key, "between": (ends[0], ends[1])}
+
+
+def _announced(
+    _: Scene, __: int | None, *, over: str, between: tuple[Any, Any], exits: int, seeds: int | None
+) -> str:
+    words = f"{over} between {between[0]} and {between[1]}, for up to {exits} mesh exits"
+    return words if seeds is None else f"{words}, of {seeds} gears"
 
 
 def _sentence(ds: xr.Dataset) -> str:
@@ -598,7 +595,9 @@ STUDY = Study(
     words="sticking threshold",
     maker="threshold",
     title="Threshold",
-    command=_call,
+    command=_written,
+    options=("exits", "seeds"),
+    announcement=_announced,
     examples=(
         "gearidae threshold mine.toml --over coating.sam_fraction=0.4,0.8 --exits 20",
         "gearidae threshold mine.toml --over coating.sam_fraction=0.4,0.8 --exits 20 --seeds 20",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Annotated, Final
+from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import numpy as np
 import xarray as xr
@@ -11,42 +11,40 @@ import xarray as xr
 from gearidae.errors import SceneError
 from gearidae.scene.pairs import quantity
 from gearidae.scene.prefixes import with_prefix
-from gearidae.studies.study import Call, Column, Option, Picture, Rows, Study
+from gearidae.studies.study import Column, Option, Picture, Rows, Study
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    from gearidae.scene import Scene
 
 QUANTILES: Final = (0.1, 0.5, 0.9)
 FITTED: Final = "One number is fitted: the wear coefficient k, of which no open measurement was found."
 _ALONG: Final = ("frequency", "joint")
 
 
-def _call(
+def _written(
     *,
     coefficient: Annotated[str, Option("Wear coefficient over hardness, 1e-16 m^2/N: fitted.")],
     threshold: Annotated[str, Option("Worn volume at which a joint has failed, 1e-21 m^3, or 2 sigma.")],
-    spread: Annotated[float, Option("Geometric standard deviation of the coefficient.")] = 1.0,
-    seeds: Annotated[int, Option("Devices that are drawn with a spread.")] = 200,
-    clearance: Annotated[bool, Option("Whether to give worn depths and the backlash that they add.")] = False,
     frequencies: Annotated[
         str | None, Option("Frequencies of the drive's law in Hz, 150,600,1200. Default: its own.")
     ] = None,
     length: Annotated[str | None, Option("Length of the joints, 2 um. Default: the face width.")] = None,
-) -> Call:
+) -> dict[str, Any]:
     parts = [] if frequencies is None else frequencies.split(",")
-    listed = [quantity("--frequencies", part.strip(), "Hz") for part in parts] or None
-    options = {
+    return {
         "coefficient": quantity("--coefficient", coefficient, "m^2/N"),
         "threshold": threshold if "sigma" in threshold else quantity("--threshold", threshold, "m^3"),
-        "spread": spread,
-        "seeds": seeds,
-        "clearance": clearance,
-        "frequencies": listed,
+        "frequencies": [quantity("--frequencies", part.strip(), "Hz") for part in parts] or None,
         "length": None if length is None else quantity("--length", length, "m"),
     }
-    count = len(parts) or 1
+
+
+def _announced(_: Scene, __: int | None, *, frequencies: list[float] | None, **___: Any) -> str:
+    count = len(frequencies or [0.0])
     many = "1 frequency" if count == 1 else f"{count} frequencies"
-    return Call((), options, f"{many}, until the sliding of the joints in a turn is steady")
+    return f"{many}, until the sliding of the joints in a turn is steady"
 
 
 def _first(point: xr.Dataset) -> str:
@@ -164,7 +162,9 @@ STUDY = Study(
     words="study of lives of hubs",
     maker="hub-life",
     title="Hub life",
-    command=_call,
+    command=_written,
+    options=("spread", "seeds", "clearance"),
+    announcement=_announced,
     examples=(
         'gearidae hub-life engine.toml --coefficient "1e-16 m^2/N" --threshold "1e-21 m^3"',
         'gearidae hub-life engine.toml --coefficient "1e-16 m^2/N" --threshold "2 sigma" --spread 2',

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import xarray as xr
 
 from gearidae.archive.select import scene_of
 from gearidae.errors import SceneError
-from gearidae.studies.options import Arrhenius, Fraction, Law, LawParameters, Passages, Resolved, Tolerance
-from gearidae.studies.study import Call, Column, Picture, Rows, Study
-from gearidae.wear.lives.law_draws import written_law
+from gearidae.studies.study import Column, Picture, Rows, Study
+from gearidae.wear.lives.law_draws import ArrheniusFactor, LawName, LawParameters, name_of, written_law
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    from gearidae.scene import Scene
+    from gearidae.wear import LossLaw
 
 _ENDINGS: Final = {
     "coverage": "the requested coverage is reached",
@@ -32,21 +34,12 @@ _EXPOSURES: Final = {
 _FLANKS: Final = ("passages", "side")
 
 
-def _call(
-    *,
-    law: Law,
-    parameter: LawParameters,
-    arrhenius: Arrhenius = None,
-    passages: Passages = 1e12,
-    fraction: Fraction = 0.0,
-    resolved: Resolved = "uniform",
-    tolerance: Tolerance = 3e-3,
-) -> Call:
-    return Call(
-        (written_law(law, parameter, arrhenius or [], {}),),
-        {"passages": passages, "fraction": fraction, "resolved": resolved, "tolerance": tolerance},
-        f"{law}; at most {passages:g} passages, of which few are simulated",
-    )
+def _written(*, law: LawName, parameter: LawParameters, arrhenius: ArrheniusFactor = None) -> dict[str, Any]:
+    return {"law": written_law(law, parameter, arrhenius or [], {})}
+
+
+def _announced(_: Scene, __: int | None, *, law: LossLaw, passages: float, **___: Any) -> str:
+    return f"{name_of(law)}; at most {passages:g} passages, of which few are simulated"
 
 
 def _sentence(ds: xr.Dataset) -> str:
@@ -230,7 +223,9 @@ STUDY = Study(
     words="life of a coating",
     maker="life",
     title="Life",
-    command=_call,
+    command=_written,
+    options=("passages", "fraction", "resolved", "tolerance"),
+    announcement=_announced,
     examples=(
         'gearidae life mine.toml --law adhesion_work --parameter "energy=0.5 mJ/m^2"',
         'gearidae life mine.toml --law contacts --parameter "area=1 nm^2" --fraction 0.5 --resolved place',

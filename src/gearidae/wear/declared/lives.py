@@ -7,7 +7,7 @@ those that are not drawn. Lives so far are kept beside the archive, in OUT.nc.li
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING, Annotated, Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import xarray as xr
@@ -15,51 +15,29 @@ import xarray as xr
 from gearidae.errors import SceneError
 from gearidae.scene.pairs import texts
 from gearidae.studies.members import count_rows
-from gearidae.studies.options import (
-    VARY_EXAMPLE,
-    Arrhenius,
-    Design,
-    Fraction,
-    Law,
-    OtherParameters,
-    Passages,
-    Resolved,
-    Seed,
-    Tolerance,
-    Vary,
-)
-from gearidae.studies.study import Call, Column, Option, Picture, Rows, Study
-from gearidae.wear.lives.law_draws import written_law
+from gearidae.studies.options import VARY_EXAMPLE, Vary
+from gearidae.studies.study import Column, Picture, Rows, Study
+from gearidae.wear.lives.law_draws import ArrheniusFactor, LawName, OtherParameters, name_of, written_law
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    from gearidae.scene import Scene
+    from gearidae.wear import LossLaw
 
 _SHARES: Final = (0.9, 0.5, 0.1)
 """Of the gears that still turn, for which the passages are given."""
 
 
-def _call(
-    *,
-    law: Law,
-    vary: Vary,
-    size: Annotated[int, Option("Number of members.")],
-    parameter: OtherParameters = None,
-    arrhenius: Arrhenius = None,
-    passages: Passages = 1e12,
-    fraction: Fraction = 0.0,
-    resolved: Resolved = "uniform",
-    tolerance: Tolerance = 3e-3,
-    design: Design = "sobol",
-    seed: Seed = 0,
-) -> Call:
+def _written(
+    *, law: LawName, vary: Vary, parameter: OtherParameters = None, arrhenius: ArrheniusFactor = None
+) -> dict[str, Any]:
     keys = texts(vary, "--vary", VARY_EXAMPLE)
-    options = {"size": size, "design": design, "seed": seed}
-    options |= {"passages": passages, "fraction": fraction, "resolved": resolved, "tolerance": tolerance}
-    return Call(
-        (written_law(law, parameter or [], arrhenius or [], keys), keys),
-        options,
-        f"{size} gears, {law}; at most {passages:g} passages, of which few are simulated",
-    )
+    return {"law": written_law(law, parameter or [], arrhenius or [], keys), "vary": keys}
+
+
+def _announced(_: Scene, __: int | None, *, law: LossLaw, size: int, passages: float, **___: Any) -> str:
+    return f"{size} gears, {name_of(law)}; at most {passages:g} passages, of which few are simulated"
 
 
 def _sentence(ds: xr.Dataset) -> str:
@@ -206,7 +184,17 @@ STUDY = Study(
     words="ensemble of lives",
     maker="lives",
     title="Lives",
-    command=_call,
+    command=_written,
+    options=(
+        "size",
+        "design",
+        "seed",
+        "life.passages",
+        "life.fraction",
+        "life.resolved",
+        "life.tolerance",
+    ),
+    announcement=_announced,
     examples=("gearidae lives mine.toml --law contacts --size 64 --vary law.area=lognormal(1e-19,3)",),
     columns={
         "member": Column(("member",), "1", "number of the member", required=False),

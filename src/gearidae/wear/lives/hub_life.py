@@ -105,8 +105,8 @@ def hub_life(
     seeds : int, optional
         Devices that are drawn with a `spread`, each joint with a k of its own.
     clearance : bool, optional
-        Whether the depth that each joint has worn, all round, is given for the end of the life, beside the backlash
-        that it adds.
+        Whether to give the depth that each joint has worn, all round, at the end of the life, and the backlash that it
+        adds.
     frequencies : sequence of float or str, optional
         Of a drive whose law has a ``frequency`` [Hz]: its last value. The whole schedule and the initial speed are
         scaled with it. By default that of the scene.

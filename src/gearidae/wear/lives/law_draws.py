@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields, replace
-from typing import Any, Final
+from typing import Annotated, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,10 +14,23 @@ from gearidae.scene.group import did_you_mean, shorten
 from gearidae.scene.pairs import assignments
 from gearidae.studies.distributions import read_distribution
 from gearidae.studies.members import drawn_members
+from gearidae.studies.study import Option
 from gearidae.wear import Arrhenius, LossLaw, loss_law
 from gearidae.wear.registry import loss_law_units
 
 _LAW: Final = "law."
+
+LawName = Annotated[str, Option("Loss law: contacts, adhesion_work, sliding_work or friction_work.")]
+_PARAMETER = Option("Parameter of the law, such as energy='2 J/m^2'; repeatable.", repeatable=True)
+LawParameters = Annotated[list[str], _PARAMETER]
+OtherParameters = Annotated[list[str] | None, _PARAMETER]
+ArrheniusFactor = Annotated[
+    list[str] | None,
+    Option(
+        "Factor of Arrhenius: activation_energy, activation_volume and temperature; repeatable.",
+        repeatable=True,
+    ),
+]
 
 
 def written_law(
@@ -32,6 +45,11 @@ def written_law(
     if sorted(values) != sorted(known):
         raise SceneError("--arrhenius", ", ".join(values), "needs " + ", ".join(known))
     return Arrhenius(law, **values)
+
+
+def name_of(law: LossLaw) -> str:
+    """Return the name of a law, or of the one that a factor of Arrhenius stands before."""
+    return law.law.name if isinstance(law, Arrhenius) else law.name
 
 
 def law_of_medians(name: str, parameters: Mapping[str, Any], vary: Mapping[str, Any]) -> LossLaw:

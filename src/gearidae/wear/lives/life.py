@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import json
 import math
-from typing import TYPE_CHECKING, Final, Unpack
+from typing import TYPE_CHECKING, Final, Literal, Unpack
 
 import xarray as xr
 
@@ -43,7 +43,7 @@ def life(
     *,
     passages: float = 1e12,
     fraction: float = 0.0,
-    resolved: str = "uniform",
+    resolved: Literal["uniform", "place", "tooth"] = "uniform",
     places: int = _PLACES,
     cycles: int = 19,
     settle: int = 6,

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Unpack
+from typing import TYPE_CHECKING, Any, Final, Literal, Unpack
 
 import numpy as np
 import xarray as xr
@@ -61,7 +61,7 @@ def lives(
     law: LossLaw,
     vary: Mapping[str, Any],
     size: int,
-    design: str = "sobol",
+    design: Literal["sobol", "random"] = "sobol",
     *,
     seed: int = 0,
     **options: Unpack[_Options],
@@ -79,8 +79,10 @@ def lives(
         law, ``{"law.energy": "lognormal(0.5 mJ/m^2, 3)"}``.
     size : int
         Number of members.
-    design, seed
-        As for `gearidae.studies.ensemble`.
+    design : {"sobol", "random"}, optional
+        Scrambled Sobol' points, which cover the distributions more evenly, or pseudo-random ones.
+    seed : int, optional
+        Seed of the design; the same one draws the same members.
     **options
         ``executor``, ``jobs``, ``backend``, ``progress``, ``archive``, ``overwrite`` and ``resume``, as for
         `gearidae.sweep`; members are followed side by side. With ``archive``, the lives so far and their finished
