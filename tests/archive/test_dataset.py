@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import itertools
 import json
-from dataclasses import fields, replace
+from dataclasses import fields
 
 import numpy as np
 import pytest
 import xarray as xr
 
 import gearidae as gd
-from gearidae.archive import combine, dataset, dimension_names, to_dataset
+from gearidae.archive import combine, dimension_names, to_dataset
 from gearidae.archive.select import run_value, runs
 from gearidae.archive.variables import EVENTS, SAMPLES
-from gearidae.engine import solve
 from gearidae.records import (
     ELASTIC_COLUMNS,
     GEAR_COLUMNS,
@@ -165,26 +164,6 @@ def test_two_runs_differ_in_date_only(make_solution):
         for name in ("history", "date_created"):
             del ds.attrs[name]
     xr.testing.assert_identical(first, second)
-
-
-@pytest.mark.parametrize("scene", [LOW, ROLLER, LOW.replace({"run.exposures": 2, "run.impacts": True})])
-def test_what_is_put_together_directly_is_what_the_constructor_of_xarray_makes(scene, monkeypatch):
-    scene = scene.replace({"run.duration": 1e-4, "run.samples": 5})
-    solution = solve(scene)
-    direct = to_dataset(scene, solution)
-    with monkeypatch.context() as patch:
-        patch.setattr(dataset, "_DIRECT", None)
-        checked = to_dataset(scene, solution)
-    checked.attrs |= {name: direct.attrs[name] for name in ("history", "date_created")}
-    xr.testing.assert_identical(direct, checked)
-    assert list(direct.variables) == list(checked.variables)
-    assert list(direct.indexes) == list(checked.indexes)
-    for name, variable in checked.variables.items():
-        made = direct.variables[name]
-        assert (type(made), made.dtype, made.encoding) == (type(variable), variable.dtype, variable.encoding)
-    assert float(direct.sel(time=0.6e-4, method="nearest").time) == 0.5e-4
-    with pytest.raises(ValueError, match="conflicting sizes"):
-        to_dataset(scene, replace(solution, time=solution.time[1:]))
 
 
 def test_sweep_stacks_runs_in_order(make_solution):

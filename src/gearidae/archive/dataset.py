@@ -20,6 +20,7 @@ from gearidae.archive.sample_table import SampleTable
 from gearidae.archive.totals import total_variables
 from gearidae.archive.variables import (
     CONTACT,
+    COVERAGE_KEY,
     OF_SWEPT_RUN,
     RUN,
     SAM_FRACTION,
@@ -27,6 +28,7 @@ from gearidae.archive.variables import (
     TIME,
     Variable,
     by_name,
+    run_label,
 )
 from gearidae.errors import SceneError
 from gearidae.populations.flanks import flanks_digest, flanks_of
@@ -36,9 +38,7 @@ from gearidae.scene.combinations import bodies_reason
 from gearidae.scene.sampled import columns_of
 
 _COUNTERS = tuple(name for name, variable in RUN.items() if variable.dtype is np.int64)
-_DIRECT: Any = getattr(xr.Dataset, "_construct_direct", None)
-"""What puts a dataset together and asks for nothing but that sizes agree: xarray's own, not documented."""
-_RESERVED = {*by_name(), *DIMS, "scene", "coordinates"}
+_RESERVED = {*by_name(), *DIMS, "scene", "coordinates"} - {SAM_FRACTION.name}
 
 
 def to_dataset(scene: Scene, solution: Solution) -> xr.Dataset:
@@ -58,7 +58,6 @@ def to_dataset(scene: Scene, solution: Solution) -> xr.Dataset:
         scalar coordinate ``sam_fraction``, energy balance and extremes without a dimension; provenance, scene, solver
         statistics and status as attributes. Everything in SI units.
     """
-    fraction = scene.coating.sam_fraction
     variables: dict[Hashable, Any] = {
         name: (("time",), _samples(solution, name), SAMPLES[name].attributes) for name in columns_of(scene)
     }
@@ -68,11 +67,11 @@ def to_dataset(scene: Scene, solution: Solution) -> xr.Dataset:
     variables |= total_variables(scene, [scene], [solution])
     exposures = exposure_variables(scene, [scene], [solution])
     variables |= exposures
-    return _put_together(
+    return xr.Dataset(
         variables,
         {
             "time": ("time", solution.time, TIME.attributes),
-            "sam_fraction": ((), fraction, SAM_FRACTION.attributes),
+            **run_label(scene),
             **(exposure_coordinates(scene) if exposures else {}),
         },
         {
@@ -87,28 +86,6 @@ def to_dataset(scene: Scene, solution: Solution) -> xr.Dataset:
             "t_end": _end(scene, solution),
         },
     )
-
-
-def _put_together(
-    variables: Mapping[Hashable, Any], coords: Mapping[Any, Any], attributes: Mapping[Any, Any]
-) -> xr.Dataset:
-    """Make a dataset of arrays that lie along the same dimensions; where this xarray can, without looking at them.
-
-    xarray's constructor merges and aligns what could come from anywhere, which takes longer than a run of a
-    millisecond. The way past that is not documented, and done without where it is not to be had.
-    """
-    coordinates = xr.Coordinates(coords)
-    if _DIRECT is None:
-        return xr.Dataset(variables, coordinates, attributes)
-    made = {
-        name: xr.Variable(dims, np.asarray(values), attrs, fastpath=True)
-        for name, (dims, values, attrs) in variables.items()
-    }
-    made |= coordinates.variables
-    ds: xr.Dataset = _DIRECT(
-        made, set(coordinates.variables), attrs=dict(attributes), indexes=dict(coordinates.xindexes)
-    )
-    return ds
 
 
 def _contacts(scene: Scene, solution: Solution) -> dict[str, str]:
@@ -205,8 +182,7 @@ def combine(
     coords.update(labels)
     if exposures:
         coords.update(exposure_coordinates(scene))
-    if "sam_fraction" not in dims:
-        coords["sam_fraction"] = ((), scene.coating.sam_fraction, SAM_FRACTION.attributes)
+    coords = {**coords, **{name: label for name, label in run_label(scene).items() if name not in dims}}
     done = sum(solution.status == "finished" for solution in solutions)
     return xr.Dataset(
         variables,
@@ -274,7 +250,7 @@ def dimension_names(keys: Sequence[str] | Mapping[str, Any]) -> dict[str, str]:
         taken = last.count(short) > 1 or short in _RESERVED or short.isdecimal()
         whole = key.replace(".", "_")
         whole = f"swept_{whole}" if whole in _RESERVED else whole
-        names[key] = whole if taken and key != "coating.sam_fraction" else short
+        names[key] = whole if taken else short
     return names
 
 
@@ -296,7 +272,7 @@ def key_labels(key: str, dim: str, values: Sequence[Any]) -> xr.Variable:
 
 def _key_attributes(key: str) -> dict[str, Any]:
     """CF attributes of a swept key, from the scene's own description of it."""
-    if key == "coating.sam_fraction":
+    if key == COVERAGE_KEY:
         return SAM_FRACTION.attributes
     try:
         info = describe_key(key)

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gearidae.archive.variables import PLACES, POPULATION_EVENTS, ROW_VARIABLES
+from gearidae.archive.variables import PLACES, POPULATION_EVENTS, ROW_VARIABLES, SAM_FRACTION
 from gearidae.errors import SceneError
 from gearidae.records import ROWS, Flank, Rows, Solution
 from gearidae.scene import Scene
@@ -31,7 +31,7 @@ def kinds_in(ds: xr.Dataset) -> Iterator[type[Rows]]:
 def needed(kind: type[Rows]) -> tuple[str, ...]:
     """Variables that rows of a kind have in archives of every version that knows the kind."""
     names = [name for name, column in kind.columns.items() if column.missing is None]
-    return tuple(f"{kind.dim}_{name}" for name in (*names, "sam_fraction"))
+    return tuple(f"{kind.dim}_{name}" for name in (*names, SAM_FRACTION.name))
 
 
 def teeth_in(attributes: Mapping[str, Any]) -> int:
@@ -39,19 +39,19 @@ def teeth_in(attributes: Mapping[str, Any]) -> int:
     return int(json.loads(attributes["scene"]).get("gears", {}).get("pinion_teeth", 1))
 
 
-def archived(rows: Rows, teeth: int, fraction: float) -> dict[str, NDArray[Any]]:
+def archived(rows: Rows, teeth: int, label: float) -> dict[str, NDArray[Any]]:
     """Values of rows of one run by the names of their variables.
 
     Parameters
     ----------
     teeth : int
         Of the pinion; 1 for a roller. The tooth of a row of no flank is -1.
-    fraction : float
-        SAM fraction of the run.
+    label : float
+        Of the run: its value of `COVERAGE_KEY`.
     """
     values = {name: getattr(rows, name) for name in rows.columns}
     values["tooth"] = np.where(rows.flank != Flank.NONE, rows.pair % teeth, -1)
-    values["sam_fraction"] = np.broadcast_to(fraction, len(rows))
+    values[SAM_FRACTION.name] = np.broadcast_to(label, len(rows))
     return {f"{rows.dim}_{name}": column for name, column in values.items()}
 
 
@@ -98,7 +98,7 @@ def row_variables(
     counts = [len(getattr(solution, kind.field)) for solution in solutions]
     shape = tuple(label.size for label in labels.values())
     for position, (dim, label) in enumerate(labels.items()):
-        if dim != "sam_fraction":
+        if f"{kind.dim}_{dim}" not in made:
             index = np.unravel_index(np.arange(len(solutions)), shape)[position]
             attributes = {
                 "long_name": f"{dim} of the run the {kind.dim} belongs to",

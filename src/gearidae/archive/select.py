@@ -14,7 +14,7 @@ from gearidae.archive.dataset import dimension_names
 from gearidae.archive.pieces import reached
 from gearidae.archive.provenance import provenance, surface_regimes
 from gearidae.archive.rows import DIMS, LABELS, kinds_in, own_rows, row_places
-from gearidae.archive.variables import EXTREMES, OF_SWEPT_RUN, RUN, SAM_FRACTION, SAMPLES
+from gearidae.archive.variables import EXTREMES, OF_SWEPT_RUN, RUN, SAM_FRACTION, SAMPLES, run_label
 from gearidae.errors import SceneError
 from gearidae.records import sampled_columns
 from gearidae.scene import GearScene, Scene
@@ -226,10 +226,10 @@ def single_run(ds: xr.Dataset) -> xr.Dataset:
     ds = own_rows(ds.squeeze(swept_dims(ds)))
     numbers: dict[str, Any] = {name: ds[name].values.item() for name in (*RUN, *OF_SWEPT_RUN) if name in ds}
     numbers.pop("reached", None)
-    swept = [str(name) for name in ds.coords if name not in (*LABELS, "sam_fraction")]
+    swept = [str(name) for name in ds.coords if name not in (*LABELS, SAM_FRACTION.name)]
     gone = {*numbers, *swept, *(f"{dim}_{name}" for dim in DIMS for name in swept)}
     single = ds.drop_vars([name for name in gone if name in ds.variables])
-    single["sam_fraction"] = ((), scene.coating.sam_fraction, SAM_FRACTION.attributes)
+    single = single.assign_coords(run_label(scene))
     of_sweep = ("history", "source", "date_created", "product_version", "backend", "method", "keep")
     single.attrs = {
         **provenance(scene, ""),

@@ -14,7 +14,7 @@ import xarray as xr
 from gearidae.archive.rows import own_rows
 from gearidae.archive.select import swept_dims
 from gearidae.archive.train.variables import is_train
-from gearidae.archive.variables import ROW_VARIABLES
+from gearidae.archive.variables import ROW_VARIABLES, SAM_FRACTION
 from gearidae.errors import SceneError
 from gearidae.records import Impacts, Rows
 
@@ -121,7 +121,7 @@ def row_table(ds: xr.Dataset, kind: type[Rows]) -> pd.DataFrame:
     ds, known, prefix = own_rows(ds), ROW_VARIABLES[kind], f"{kind.dim}_"
     labels = [str(name) for name in ds.data_vars if str(name).startswith(prefix) and name not in known]
     columns: dict[str, Any] = {}
-    for name in (*labels, f"{prefix}sam_fraction", *(name for name in known if name in ds)):
+    for name in (*labels, f"{prefix}{SAM_FRACTION.name}", *(name for name in known if name in ds)):
         flags = known[name].flags if name in known else None
         values = ds[name].values
         columns.setdefault(name.removeprefix(prefix), _in_words(values, flags) if flags else values)

@@ -35,6 +35,7 @@ from gearidae.archive.journal import Journal, journal_of
 from gearidae.archive.rows import archived, teeth_in
 from gearidae.archive.time_index import LARGEST_IN_MEMORY, with_times
 from gearidae.archive.totals import total_variables
+from gearidae.archive.variables import SAM_FRACTION
 from gearidae.records import (
     COUNTERS,
     ROWS,
@@ -351,11 +352,11 @@ class RunJournal:
         column = name.removeprefix(f"{kind.dim}_")
         if column in kind.columns:
             return partial(self._column, kind.field, list(kind.columns).index(column))
-        teeth, fraction = teeth_in(self.attributes), float(template["sam_fraction"])
+        teeth, label = teeth_in(self.attributes), float(template[SAM_FRACTION.name])
 
         def derived(number: int, first: int, last: int) -> NDArray[Any]:
             rows = kind.of_table(self._journal.table(self._frames[number], kind.field).T)
-            return archived(rows, teeth, fraction)[name][first:last]
+            return archived(rows, teeth, label)[name][first:last]
 
         return derived
 

@@ -28,6 +28,11 @@ def value_text(value: Any, unit: str) -> str:
     return number_text(value) if isinstance(value, (int, float, str)) else json.dumps(value)
 
 
+def coverage_text(share: float) -> str:
+    """Write the covered share of the flanks."""
+    return f"SAM {100.0 * share:.4g} %"
+
+
 def values_text(values: list[Any], unit: str) -> str:
     """Write several values; of many, the first and the last."""
     shown = [

@@ -103,6 +103,8 @@ TIME = Variable("time", ("time",), "s", "time since the start of the run")
 SAM_FRACTION = Variable(
     "sam_fraction", (), "1", "fraction of the contact area covered by the self-assembled monolayer"
 )
+COVERAGE_KEY = f"coating.{SAM_FRACTION.name}"
+"""The key whose value labels each run and its rows, swept or not. Any other key labels runs where it is swept."""
 
 SAMPLES: Mapping[str, Variable] = {
     column.name: Variable(column.name, ("time",), column.units, column.long_name, comment=column.comment)
@@ -140,7 +142,7 @@ _EVENTS = (
         "force of the pair along the line of action",
         comment="at onsets and separations, positive where the flanks push each other apart; NaN elsewhere",
     ),
-    Variable("event_sam_fraction", ("event",), "1", "SAM fraction of the run the event belongs to"),
+    Variable(f"event_{SAM_FRACTION.name}", ("event",), "1", "SAM fraction of the run the event belongs to"),
 )
 EVENTS: Mapping[str, Variable] = {variable.name: variable for variable in _EVENTS}
 
@@ -190,7 +192,9 @@ _PASSAGES = (
         for name, meaning in (quantity.archive or {quantity.name: quantity.meaning}).items()
     ),
     Variable("passage_tooth", ("passage",), "1", "tooth of the pinion, counted from 0", np.int64),
-    Variable("passage_sam_fraction", ("passage",), "1", "SAM fraction of the run the passage belongs to"),
+    Variable(
+        f"passage_{SAM_FRACTION.name}", ("passage",), "1", "SAM fraction of the run the passage belongs to"
+    ),
 )
 PASSAGES: Mapping[str, Variable] = {variable.name: variable for variable in _PASSAGES}
 _IMPACTS = (
@@ -208,7 +212,10 @@ _IMPACTS = (
     ),
     Variable("tooth_impact_tooth", ("tooth_impact",), "1", "tooth of the pinion, counted from 0", np.int64),
     Variable(
-        "tooth_impact_sam_fraction", ("tooth_impact",), "1", "SAM fraction of the run the impact belongs to"
+        f"tooth_impact_{SAM_FRACTION.name}",
+        ("tooth_impact",),
+        "1",
+        "SAM fraction of the run the impact belongs to",
     ),
 )
 IMPACTS: Mapping[str, Variable] = {variable.name: variable for variable in _IMPACTS}
@@ -353,11 +360,16 @@ def extreme_names(scene: Scene) -> tuple[str, ...]:
     return tuple(name for name in extremes if name not in ASPERITY_COUNTS or scene.contact.is_discrete)
 
 
+def run_label(scene: Scene) -> dict[str, tuple[tuple[()], float, dict[str, Any]]]:
+    """Coordinate that labels a run."""
+    return {SAM_FRACTION.name: ((), scene.coating.sam_fraction, SAM_FRACTION.attributes)}
+
+
 def by_name() -> dict[str, Variable]:
     """Every variable of the catalogue by its name."""
     return {
         "time": TIME,
-        "sam_fraction": SAM_FRACTION,
+        SAM_FRACTION.name: SAM_FRACTION,
         **SAMPLES,
         **EVENTS,
         **POPULATION_EVENTS,

@@ -10,6 +10,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
+from gearidae.archive.variables import SAM_FRACTION
 from gearidae.drawing.style import scaled
 
 _MOST_NAMES = 12
@@ -54,7 +55,7 @@ def parameter_axis(coordinate: xr.DataArray) -> ParameterAxis:
     name = str(coordinate.name)
     if not np.issubdtype(values.dtype, np.number):
         return ParameterAxis(np.arange(len(values), dtype=np.float64), name, tuple(map(str, values.tolist())))
-    if name == "sam_fraction":
+    if name == SAM_FRACTION.name:
         return ParameterAxis(100.0 * values, "SAM (%)", limit=100.0, factor=100.0)
     scale = scaled(float(np.abs(values).max()), str(coordinate.attrs.get("units", "1")))
     unit = "" if scale.unit == "1" else f" ({scale.unit})"

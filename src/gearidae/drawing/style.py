@@ -23,6 +23,8 @@ from gearidae.analysis.verdict import START_UP, outcomes
 from gearidae.analysis.verdict.judge import is_scheduled
 from gearidae.archive.pieces import PIECE, Spread, pieces, reached, spread
 from gearidae.archive.select import run_value, runs, scene_of
+from gearidae.archive.value_text import coverage_text
+from gearidae.archive.variables import SAM_FRACTION
 from gearidae.arrays import Floats
 from gearidae.drawing.picking import pick
 from gearidae.drawing.picture import PictureAxes, is_set, new_picture
@@ -380,8 +382,8 @@ def _label(label: Mapping[str, Any], run: xr.Dataset) -> str:
     words = []
     for dim, value in label.items():
         unit = run[dim].attrs.get("units", "1")
-        if dim == "sam_fraction":
-            words.append(f"SAM {100 * value:.4g} %")
+        if dim == SAM_FRACTION.name:
+            words.append(coverage_text(value))
         elif isinstance(value, float) and unit != "1":
             scale = scaled(abs(value), unit)
             words.append(f"{dim} {value * scale.factor:.4g} {scale.unit}")

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
+from gearidae.drawing.parameter_axis import parameter_axis
 from gearidae.drawing.style import label_axis, line_colour, line_style, line_width, new_axes, scale_for, tidy
 from gearidae.monitor.map_model import require_map
 
@@ -40,7 +41,8 @@ def coating_map(chart: xr.Dataset, ax: Axes | None = None, *, assessment: Assess
     """
     chart = require_map(chart)
     ax = new_axes(ax, height=3.8)
-    percent = 100.0 * chart["sam_fraction"].values
+    along = parameter_axis(chart["sam_fraction"])
+    percent = along.places
     further = [str(dim) for dim in chart["characteristic_frequency"].dims if dim != "sam_fraction"]
     lines = chart.stack(line=further) if further else chart.expand_dims("line")
     for number in range(lines.sizes["line"]):
@@ -73,7 +75,7 @@ def coating_map(chart: xr.Dataset, ax: Axes | None = None, *, assessment: Assess
     ax.set_yscale("log")
     label_axis(ax.yaxis, "frequency of the impact response", "Hz", minor=True)
     ax.tick_params(axis="y", which="minor", labelsize="x-small")
-    ax.set_xlabel("SAM (%)")
+    ax.set_xlabel(along.label)
     tidy(ax)
     ax.legend(frameon=False, fontsize="small")
     return ax

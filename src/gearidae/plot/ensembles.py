@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 
 from gearidae.analysis.verdict.codes import STUCK
 from gearidae.archive.specimen import SEED_KEYS
+from gearidae.archive.variables import COVERAGE_KEY
 from gearidae.arrays import Floats
 from gearidae.drawing.parameter_axis import parameter_axis
 from gearidae.drawing.style import NEGATIVE, POSITIVE, legend_columns, line_width, mark_value, new_axes, tidy
@@ -18,8 +19,6 @@ from gearidae.errors import SceneError
 from gearidae.plot.outcome import look_of
 from gearidae.studies._sticking_probability import as_ensemble, drawn_keys
 from gearidae.studies._sticking_probability import sticking_probability as probability_of
-
-_COVERAGE = "coating.sam_fraction"
 
 
 def sticking_probability(
@@ -51,7 +50,7 @@ def sticking_probability(
     """
     ds = as_ensemble(ds)
     names = drawn_keys(ds)
-    drawn = [key for key in (_COVERAGE, *names) if key in names and key not in SEED_KEYS]
+    drawn = [key for key in (COVERAGE_KEY, *names) if key in names and key not in SEED_KEYS]
     over = over or next(iter(drawn), next(iter(names)))
     estimate = probability_of(ds, over, bins=bins)
     name = names[over]

@@ -8,6 +8,8 @@ from matplotlib.figure import Figure, SubFigure
 from gearidae.archive.select import is_roller, scene_of, swept_dims
 from gearidae.archive.specimen import specimen_label
 from gearidae.archive.train.variables import is_train
+from gearidae.archive.value_text import coverage_text
+from gearidae.archive.variables import SAM_FRACTION
 from gearidae.drawing.picture import new_picture
 from gearidae.drawing.style import runs_of
 from gearidae.plot.gears import gear_speed
@@ -75,6 +77,6 @@ def overview(ds: xr.Dataset, *, figure: Figure | SubFigure | None = None) -> Fig
 
 def _title(ds: xr.Dataset) -> str:
     words = [str(scene_of(ds).get("name", "")).replace("_", " ")]
-    if "sam_fraction" in ds.coords and not ds["sam_fraction"].dims:
-        words.append(f"SAM {100 * ds['sam_fraction'].item():.4g} %")
+    if (label := SAM_FRACTION.name) in ds.coords and not ds[label].dims:
+        words.append(coverage_text(ds[label].item()))
     return ", ".join(filter(None, (*words, specimen_label(ds))))

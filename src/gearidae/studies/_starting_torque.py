@@ -13,6 +13,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from gearidae.archive.provenance import provenance
+from gearidae.archive.variables import COVERAGE_KEY
 from gearidae.errors import SceneError
 from gearidae.runs.execution import Execution, RunOptions, prepared
 from gearidae.runs.release import holding_forces
@@ -46,7 +47,6 @@ if TYPE_CHECKING:
 log = logging.getLogger(__name__)
 
 _FRACTIONS = np.round(np.linspace(1.0, 0.4, 13), 4)
-_FRACTION = "coating.sam_fraction"
 _ALIKE = {"mesh.pitch_error_rms": 0.0}
 """Teeth without errors."""
 _LOWEST = 1e-3
@@ -315,7 +315,7 @@ def _torques_of_gears(
         }
         attributes = {
             **provenance(
-                scene, "searched starting torques of gears", swept=(_FRACTION, *seeds_that_draw(base))
+                scene, "searched starting torques of gears", swept=(COVERAGE_KEY, *seeds_that_draw(base))
             ),
             "title": f"{scene.name}: starting torque of {len(gears)} gears",
             "summary": "Smallest drive torques that keep gears of one design turning against adhesion.",
@@ -383,7 +383,7 @@ def _dataset(
         "parts": np.array([parts_of(search.scene, search.static) for search in searches]),
         "message": np.array([search.failure for search in searches]),
     }
-    key, against = ("initial.rest_time", "time at rest") if study is RESTS else (_FRACTION, "SAM fraction")
+    key, against = ("initial.rest_time", "time at rest") if study is RESTS else (COVERAGE_KEY, "SAM fraction")
     attributes = {
         **provenance(scene, "searched the starting torque", swept=(key,)),
         "title": f"{scene.name}: starting torque",

@@ -15,7 +15,7 @@ from gearidae.archive.run_summary import RunSummary, summary_of
 from gearidae.archive.select import is_roller, run_scene, runs, scene_of, single_run, swept_dims
 from gearidae.archive.tables import LARGEST_TABLE, row_table, run_labels, time_series
 from gearidae.archive.totals import energy_balance
-from gearidae.archive.variables import EXTREMES, STANDSTILL_LIST
+from gearidae.archive.variables import EXTREMES, SAM_FRACTION, STANDSTILL_LIST
 from gearidae.errors import SceneError
 from gearidae.records import Events, Impacts, Passages
 from gearidae.scene import Scene
@@ -170,8 +170,8 @@ class Results:
         ds, dims = self._ds, swept_dims(self._ds)
         judged = outcomes(ds)
         columns: dict[str, Any] = run_labels(ds, dims)
-        if "sam_fraction" in ds.coords and not ds["sam_fraction"].dims:
-            columns.setdefault("sam_fraction", ds["sam_fraction"].values.item())
+        if (label := SAM_FRACTION.name) in ds.coords and not ds[label].dims:
+            columns.setdefault(label, ds[label].values.item())
         for name in ("verdict", "words", "status"):
             columns[name] = [getattr(outcome, name) for outcome in judged]
         for name in EXTREMES:

@@ -19,6 +19,8 @@ from gearidae.analysis.impacts import WIDTH, check_width
 from gearidae.analysis.ringing import characteristic_frequency, impact_frequencies
 from gearidae.archive import dimension_names
 from gearidae.archive.provenance import provenance
+from gearidae.archive.value_text import coverage_text
+from gearidae.archive.variables import COVERAGE_KEY
 from gearidae.errors import SceneError
 from gearidae.monitor.map_model import FEWEST_GEARS, GEARS, SEEDS, require_map
 from gearidae.runs.execution import Execution, RunOptions
@@ -40,7 +42,6 @@ if TYPE_CHECKING:
 
 FRACTIONS = np.round(np.linspace(1.0, 0.5, 51), 4)
 """Fractions of a map by default."""
-_FRACTION = "coating.sam_fraction"
 _TORQUE = "drive.torque"
 _MOST_FRACTIONS: Final = 13
 """Of a line, in the summary."""
@@ -133,12 +134,12 @@ def coating_map(
         if seeds is not None:
             lines = [_of_gears(every[first : first + seeds]) for first in range(0, len(every), seeds)]
         return _assembled(lines, numbers).assign_attrs(
-            _attributes(scene, (_FRACTION, *keys), {**every[0].attrs, **(notes[0] if notes else {})}),
+            _attributes(scene, (COVERAGE_KEY, *keys), {**every[0].attrs, **(notes[0] if notes else {})}),
             **({} if seeds is None else {SEEDS: seeds}),
         )
 
     scenes = [run for plan in plans for run in plan.scenes]
-    settings = {_FRACTION: fractions, **numbers, "width": width}
+    settings = {COVERAGE_KEY: fractions, **numbers, "width": width}
     settings |= {} if seeds is None else {SEEDS: seeds}
     return STUDY.compute(execution, plans[0].base, work, settings, origin=scene, scenes=scenes)
 
@@ -166,7 +167,7 @@ def _plans(
         base = prepare(
             scene.replace(changes) if changes else scene, rtol=None, t_end=None, samples=None, backend=backend
         )
-        plans.append(plan_sweep(base, {_FRACTION: fractions}))
+        plans.append(plan_sweep(base, {COVERAGE_KEY: fractions}))
     return plans
 
 
@@ -198,8 +199,8 @@ def further_keys(scene: Scene, over: object) -> dict[str, list[Any]]:
             over,
             'must be "drive.torque" or a table of keys and values, {"drive.torque": [4e-18, 5e-18]}',
         )
-    if _FRACTION in over:
-        raise SceneError("over", _FRACTION, "is the map's own axis: give it as sam_fraction")
+    if COVERAGE_KEY in over:
+        raise SceneError("over", COVERAGE_KEY, "is the map's own axis: give it as sam_fraction")
     return {str(key): values_of(str(key), values) for key, values in over.items()}
 
 
@@ -312,7 +313,7 @@ def _written(
     ] = None,
 ) -> dict[str, Any]:
     values = sweep_values([pair for pair in over or [] if pair.strip() != _TORQUE])
-    fractions = values.pop(_FRACTION, FRACTIONS.tolist())
+    fractions = values.pop(COVERAGE_KEY, FRACTIONS.tolist())
     usual_torques = any(pair.strip() == _TORQUE for pair in over or [])
     if usual_torques and values:
         raise SceneError("--over", _TORQUE, f"needs values beside {', '.join(values)}: {_TORQUE}=4e-18,5e-18")
@@ -326,7 +327,7 @@ def _announced(
     if seeds is not None:
         drawn = gears_of(scene, seeds)  # one key stands for all seeds of a gear
         gears = {key: [gear[key] for gear in drawn] for key in list(drawn[0])[:1]}
-    return grid_words(scene, {_FRACTION: sam_fraction} | further_keys(scene, over) | gears, workers)
+    return grid_words(scene, {COVERAGE_KEY: sam_fraction} | further_keys(scene, over) | gears, workers)
 
 
 def _sentence(ds: xr.Dataset) -> str:
@@ -368,7 +369,7 @@ def _rows(ds: xr.Dataset) -> Rows:
                 remark = f"between gears {100.0 * apart:.2g} %"
             if np.isnan(slowest):
                 remark = "its run could not be finished"
-            yield f"SAM {100 * float(point['sam_fraction']):g} %", text, remark
+            yield coverage_text(float(point["sam_fraction"])), text, remark
 
 
 STUDY = Study(

@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 import numpy as np
 import xarray as xr
 
-from gearidae.archive.variables import SAM_FRACTION
+from gearidae.archive.value_text import coverage_text
+from gearidae.archive.variables import COVERAGE_KEY, SAM_FRACTION
 from gearidae.errors import SceneError
 from gearidae.scene.pairs import sweep_values
 from gearidae.scene.prefixes import with_prefix
@@ -32,7 +33,6 @@ SLOW_ENOUGH: Final = 0.1
 """Change of the median by half the rate below which a rate is slow enough."""
 _TORQUE_WORDS: Final = "starting torque on the pinion"
 _OWN: Final = "the drive's own"
-_FRACTION: Final = "coating.sam_fraction"
 _REST: Final = "initial.rest_time"
 _ALONG: Final = ("sam_fraction",)
 _AFTER: Final = ("rest_time",)
@@ -51,8 +51,10 @@ def _written(
     fractions: Any = "own"
     if over is not None:
         ((key, fractions),) = sweep_values([over]).items()
-        if key != _FRACTION:
-            raise SceneError("--over", over, f"must be {_FRACTION} and its values; set other keys by --set")
+        if key != COVERAGE_KEY:
+            raise SceneError(
+                "--over", over, f"must be {COVERAGE_KEY} and its values; set other keys by --set"
+            )
     times = None if rest is None else sweep_values([f"{_REST}={rest}"])[_REST]
     return {"sam_fraction": fractions, "rest_time": times}
 
@@ -128,7 +130,7 @@ def _points(ds: xr.Dataset) -> list[tuple[str, xr.Dataset]]:
         points = [ds.isel(rest_time=number) for number in range(ds.sizes["rest_time"])]
         return [(f"after {_time(float(point['rest_time']))} at rest", point) for point in points]
     points = [ds.isel(sam_fraction=number) for number in range(ds.sizes["sam_fraction"])]
-    return [(f"SAM {100.0 * float(point['sam_fraction']):.4g} %", point) for point in points]
+    return [(coverage_text(float(point[_ALONG[0]])), point) for point in points]
 
 
 def _rows(ds: xr.Dataset) -> Rows:
@@ -184,7 +186,7 @@ def _teeth_sentence(ds: xr.Dataset) -> str:
     """Say what the gears of the worst coverage need."""
     worst = ds.isel(sam_fraction=int(np.argmin(ds["sam_fraction"].values)))
     low, middle, high = (_found(value) for value in worst["quantiles"].values.tolist())
-    coated = f"SAM {100.0 * float(worst['sam_fraction']):.4g} %"
+    coated = coverage_text(float(worst[_ALONG[0]]))
     return (
         f"{coated}: half of {_followed_teeth(worst)} gears of this design start at {middle} on the pinion, 80 % of "
         f"them between {low} and {high}."
@@ -205,7 +207,7 @@ def _teeth_rows(ds: xr.Dataset) -> Rows:
     for number in range(ds.sizes["sam_fraction"]):
         point = ds.isel(sam_fraction=number)
         count = _followed_teeth(point)
-        yield f"Starting torque of {count} gears, SAM {100.0 * float(point['sam_fraction']):.4g} %", "", ""
+        yield f"Starting torque of {count} gears, {coverage_text(float(point[_ALONG[0]]))}", "", ""
         for share, torque in zip(
             point["quantile"].values.tolist(), point["quantiles"].values.tolist(), strict=True
         ):
@@ -299,14 +301,16 @@ def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     """
     from matplotlib.ticker import StrMethodFormatter
 
+    from gearidae.drawing.parameter_axis import parameter_axis
     from gearidae.drawing.style import label_axis
 
     STUDY.require(ds)
-    percent = 100.0 * ds["sam_fraction"].values
+    along = parameter_axis(ds[_ALONG[0]])
+    percent = along.places
     ax = _torques_over(ds, percent, ax)
     ax.set_yscale("log")
     label_axis(ax.yaxis, f"starting torque on {ds.attrs.get('drive_shaft', 'the pinion')}", "N m")
-    ax.set_xlabel("SAM (%)")
+    ax.set_xlabel(along.label)
     ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
     if len(percent) > 1:
         ax.set_xlim(percent.min(), percent.max())
