@@ -192,7 +192,7 @@ def test_readers_and_the_writer_are_in_no_one_s_way(path):
 def made(path, header, contents=b""):
     """A journal made by hand, with sound checksums."""
     checksum = zlib.crc32(header + contents)
-    lead = module._LEAD.pack(module._MARK, len(header), len(contents), checksum, 0)[:-4]
+    lead = module._PREAMBLE.pack(module._MARK, len(header), len(contents), checksum, 0)[:-4]
     path.write_bytes(SIGNATURE + lead + zlib.crc32(lead).to_bytes(4, "little") + header + contents)
 
 

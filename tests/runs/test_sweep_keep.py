@@ -12,7 +12,7 @@ import xarray as xr
 import gearidae as gd
 from gearidae.analysis.verdict import outcomes
 from gearidae.archive.journal import Journal, journal_of
-from gearidae.archive.keep import GROUPS
+from gearidae.archive.output_selection import GROUPS
 from gearidae.cli import main
 from sweeps import without_times
 

@@ -163,8 +163,8 @@ def signals(
         shape=samples.shape[:-1],
         coords={str(key): value for key, value in array.coords.items() if "time" not in value.dims},
         signals=tuple(
-            replace(events(place), values=_until_end(samples[place], name, time, late))
-            for place in np.ndindex(samples.shape[:-1])
+            replace(events(index), values=_until_end(samples[index], name, time, late))
+            for index in np.ndindex(samples.shape[:-1])
         ),
     )
 
@@ -312,8 +312,8 @@ def _events_of(
         if f"event_{key}" in data and key != "time"
     }
 
-    def events(place: tuple[int, ...]) -> Signal:
-        run = array.isel(dict(zip(dims, place, strict=True)))
+    def events(index: tuple[int, ...]) -> Signal:
+        run = array.isel(dict(zip(dims, index, strict=True)))
         of_run = np.ones(len(time), np.bool_)
         for key, label in labels.items():
             of_run &= label == run[key].values.item()

@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 import gearidae
-from gearidae.archive.rows import DIMS, kinds_in, rows_from
+from gearidae.archive.row_variables import DIMS, kinds_in, rows_from
 from gearidae.archive.select import run_scene, single_run
 from gearidae.archive.variables import RUN
 from gearidae.errors import SceneError

@@ -13,8 +13,8 @@ import xarray as xr
 from gearidae.archive.chain import chained, history_of, part_name, software_of
 from gearidae.archive.dataset import dimension_names
 from gearidae.archive.exposures import exposure_coordinates
-from gearidae.archive.keep import kept_in
-from gearidae.archive.rows import rows_from
+from gearidae.archive.output_selection import kept_in
+from gearidae.archive.row_variables import rows_from
 from gearidae.archive.select import run_value, runs, scene_of, single_run, swept_dims
 from gearidae.archive.stack import Axis, stack
 from gearidae.archive.variables import (

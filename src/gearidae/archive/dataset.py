@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from gearidae.archive.end_state import end_state_attributes
 from gearidae.archive.exposures import exposure_coordinates, exposure_variables
-from gearidae.archive.keep import EVERYTHING, OutputSelection
+from gearidae.archive.output_selection import EVERYTHING, OutputSelection
 from gearidae.archive.provenance import provenance, surface_regimes
-from gearidae.archive.rows import DIMS, row_variables
+from gearidae.archive.row_variables import DIMS, row_variables
 from gearidae.archive.sample_table import SampleTable
 from gearidae.archive.totals import total_variables
 from gearidae.archive.variables import (

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from gearidae.archive.library import opened, uninterrupted
-from gearidae.archive.rows import DIMS
+from gearidae.archive.netcdf_access import opened, uninterrupted
+from gearidae.archive.row_variables import DIMS
 
 _COMPRESSED_FROM = 2**12
 """Variables of this size [bytes] are compressed: a block of the disk, below which nothing is won."""

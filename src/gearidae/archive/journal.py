@@ -27,11 +27,11 @@ from gearidae.archive.disk import sync
 
 SIGNATURE: Final = b"gearidae journal 1\n"
 """How the file begins; the number is that of the layout."""
-_LEAD: Final = struct.Struct("<4sIQII")
+_PREAMBLE: Final = struct.Struct("<4sIQII")
 """Before each frame: mark, bytes of the header, bytes of the arrays, CRC-32 of both, and of the lead before that."""
 _MARK: Final = b"\x93frm"
 _TYPES: Final = {"f": "<f8", "u": "<u8"}
-_PIECE: Final = 2**20
+_CHUNK: Final = 2**20
 """Bytes read at a time."""
 
 
@@ -63,7 +63,7 @@ class Frame:
     shapes: Mapping[str, tuple[int, ...]]
     begin: int
     end: int
-    _places: Mapping[str, tuple[int, str]]
+    _offsets: Mapping[str, tuple[int, str]]
 
 
 class Journal:
@@ -128,20 +128,20 @@ class Journal:
             whose lengths are altered.
         """
         self.end, size = self.head.end, self._file.seek(0, os.SEEK_END)
-        while (lead := self._lead(self.end, size)) is not None:
-            begin, self.end = self.end, self.end + _LEAD.size + lead[0] + lead[1]
-            yield self._frame(begin, *lead)
+        while (preamble := self._preamble(self.end, size)) is not None:
+            begin, self.end = self.end, self.end + _PREAMBLE.size + preamble[0] + preamble[1]
+            yield self._frame(begin, *preamble)
 
     def frame(self, begin: int) -> Frame:
-        """Read the frame that begins at a place, with its checksums.
+        """Read the frame that begins at an offset, with its checksums.
 
         Raises
         ------
         ValueError
             If it is not there any more, or altered.
         """
-        lead = self._lead(begin, self._file.seek(0, os.SEEK_END))
-        if lead is None or (frame := self._frame(begin, *lead)) is None:
+        preamble = self._preamble(begin, self._file.seek(0, os.SEEK_END))
+        if preamble is None or (frame := self._frame(begin, *preamble)) is None:
             raise ValueError("it has been altered")
         return frame
 
@@ -157,9 +157,9 @@ class Journal:
         OSError
             If the file has been cut since it was opened.
         """
-        place, dtype = frame._places[name]
+        offset, dtype = frame._offsets[name]
         last = math.prod(frame.shapes[name]) if last is None else last
-        content = self._read(place + 8 * first, 8 * (last - first))
+        content = self._read(offset + 8 * first, 8 * (last - first))
         if len(content) < 8 * (last - first):
             raise OSError(f"{self.path.name} has been cut while it was read: open it again")
         return np.frombuffer(content, dtype)
@@ -199,7 +199,7 @@ class Journal:
         return _described(contents[1], begin, self.end)
 
     def cut(self, end: int) -> None:
-        """Take back all that is behind a place, the end of a frame."""
+        """Take back all that is behind an offset, the end of a frame."""
         with self._using:
             self._file.truncate(end)
         self.end = end
@@ -218,29 +218,29 @@ class Journal:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def _lead(self, place: int, size: int) -> tuple[int, int, int] | None:
-        """Lengths and checksum of the frame at a place; None if there is no whole one."""
-        lead = self._read(place, _LEAD.size)
-        if len(lead) < _LEAD.size:
+    def _preamble(self, offset: int, size: int) -> tuple[int, int, int] | None:
+        """Lengths and checksum of the frame at an offset; None if there is no whole one."""
+        preamble = self._read(offset, _PREAMBLE.size)
+        if len(preamble) < _PREAMBLE.size:
             return None
-        mark, text_size, array_size, checksum, own = _LEAD.unpack(lead)
-        is_whole = place + _LEAD.size + text_size + array_size <= size
-        if mark != _MARK or own != zlib.crc32(lead[:-4]) or not is_whole:
+        mark, text_size, array_size, checksum, own = _PREAMBLE.unpack(preamble)
+        is_whole = offset + _PREAMBLE.size + text_size + array_size <= size
+        if mark != _MARK or own != zlib.crc32(preamble[:-4]) or not is_whole:
             return None
         return text_size, array_size, checksum
 
     def _frame(self, begin: int, text_size: int, array_size: int, checksum: int) -> Frame | None:
         """Read a frame of which the lengths are known; None if its content is altered."""
-        place = begin + _LEAD.size
-        text = self._read(place, text_size)
-        found, end = zlib.crc32(text), place + text_size + array_size
-        for start in range(place + text_size, end, _PIECE):
-            found = zlib.crc32(self._read(start, min(_PIECE, end - start)), found)
+        offset = begin + _PREAMBLE.size
+        text = self._read(offset, text_size)
+        found, end = zlib.crc32(text), offset + text_size + array_size
+        for start in range(offset + text_size, end, _CHUNK):
+            found = zlib.crc32(self._read(start, min(_CHUNK, end - start)), found)
         return _described(text, begin, end) if found == checksum else None
 
-    def _read(self, place: int, size: int) -> bytes:
+    def _read(self, offset: int, size: int) -> bytes:
         with self._using:  # threads share the file's position
-            self._file.seek(place)
+            self._file.seek(offset)
             content: bytes = self._file.read(size)
             return content
 
@@ -254,15 +254,15 @@ def _packed(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> li
     checksum = 0
     for content in contents:
         checksum = zlib.crc32(content, checksum)
-    lead = _LEAD.pack(_MARK, len(text), sum(part.nbytes for part in parts.values()), checksum, 0)[:-4]
-    return [lead + zlib.crc32(lead).to_bytes(4, "little"), *contents]
+    preamble = _PREAMBLE.pack(_MARK, len(text), sum(part.nbytes for part in parts.values()), checksum, 0)[:-4]
+    return [preamble + zlib.crc32(preamble).to_bytes(4, "little"), *contents]
 
 
 def _described(text: bytes, begin: int, end: int) -> Frame:
     """Make a frame of its header, and refuse arrays that do not fit into it: the file says where they are."""
     shapes: dict[str, tuple[int, ...]] = {}
-    places: dict[str, tuple[int, str]] = {}
-    place = begin + _LEAD.size + len(text)
+    offsets: dict[str, tuple[int, str]] = {}
+    offset = begin + _PREAMBLE.size + len(text)
     try:
         header = json.loads(text)
         for name, dtype, shape in header.pop("arrays"):
@@ -270,13 +270,13 @@ def _described(text: bytes, begin: int, end: int) -> Frame:
                 type(length) is int and length >= 0 for length in shape
             ):
                 raise ValueError(f"its array {name} is of another kind")
-            shapes[name], places[name] = tuple(shape), (place, dtype)
-            place += 8 * math.prod(shape)
+            shapes[name], offsets[name] = tuple(shape), (offset, dtype)
+            offset += 8 * math.prod(shape)
     except (RecursionError, KeyError, TypeError, AttributeError) as error:
         raise ValueError("the header of one of its frames is not readable") from error
-    if place != end:
+    if offset != end:
         raise ValueError("its arrays are not as long as they say")
-    return Frame(header, shapes, begin, end, places)
+    return Frame(header, shapes, begin, end, offsets)
 
 
 def _plain(value: Any) -> Any:

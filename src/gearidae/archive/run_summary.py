@@ -17,6 +17,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gearidae.archive.select import is_roller, scene_of
+from gearidae.archive.slices import SLICE
 from gearidae.archive.totals import balance_of, extremes_of
 from gearidae.archive.train.variables import is_train
 from gearidae.archive.variables import ENERGY_BALANCE
@@ -29,8 +30,6 @@ from gearidae.scene import GearScene
 from gearidae.scene.friction import has_flank_friction
 from gearidae.scene.joints import has_joint_friction
 
-PIECE = 2**18
-"""Samples, or events, looked at together."""
 AT_SPEED = 0.95
 """Share of its largest sampled speed from which a gear counts as up to speed."""
 OF_ONE_RUN: Final = frozenset({"time_to_speed", "sticks", "slips", "impacts"})
@@ -173,8 +172,8 @@ def _energies(balance: Mapping[str, float] | None) -> dict[str, float]:
 
 def _pieces(ds: xr.Dataset, dim: str, names: tuple[str, ...]) -> Iterator[dict[str, NDArray[Any]]]:
     """Go through a dimension."""
-    for start in range(0, ds.sizes[dim], PIECE):
-        yield {name: ds[name][start : start + PIECE].values for name in names}
+    for start in range(0, ds.sizes[dim], SLICE):
+        yield {name: ds[name][start : start + SLICE].values for name in names}
 
 
 def _time_to_speed(ds: xr.Dataset, top: float) -> float:

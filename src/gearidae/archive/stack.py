@@ -8,9 +8,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from gearidae.archive.dataset import combine, dimension_names, key_labels
-from gearidae.archive.keep import EVERYTHING, OutputSelection
+from gearidae.archive.output_selection import EVERYTHING, OutputSelection
 from gearidae.archive.provenance import provenance
-from gearidae.archive.rows import DIMS
+from gearidae.archive.row_variables import DIMS
 from gearidae.archive.sample_table import SampleTable
 from gearidae.records import Solution
 

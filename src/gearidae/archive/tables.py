@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from gearidae.archive.rows import own_rows
+from gearidae.archive.row_variables import own_rows
 from gearidae.archive.select import swept_dims
 from gearidae.archive.train.variables import is_train
 from gearidae.archive.variables import ROW_VARIABLES, SAM_FRACTION

@@ -32,7 +32,7 @@ from gearidae.archive.attributes import readable_scene
 from gearidae.archive.dataset import to_dataset
 from gearidae.archive.end_state import end_state_attributes
 from gearidae.archive.journal import Journal, journal_of
-from gearidae.archive.rows import archived, teeth_in
+from gearidae.archive.row_variables import archived, teeth_in
 from gearidae.archive.time_index import LARGEST_IN_MEMORY, with_times
 from gearidae.archive.totals import total_variables
 from gearidae.archive.variables import SAM_FRACTION

@@ -12,7 +12,7 @@ import numpy as np
 
 from gearidae.analysis.ringing import characteristic_frequency
 from gearidae.analysis.verdict.codes import sticking, verdict_codes
-from gearidae.archive.keep import read_keep
+from gearidae.archive.output_selection import read_keep
 from gearidae.archive.select import runs
 from gearidae.arrays import Floats
 from gearidae.calibration.observations import RING, STICKS, Observation

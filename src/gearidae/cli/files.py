@@ -10,7 +10,7 @@ import xarray as xr
 
 import gearidae as gd
 from gearidae.archive.journal import file_of
-from gearidae.archive.rows import DIMS
+from gearidae.archive.row_variables import DIMS
 from gearidae.archive.select import is_roller, scene_of, swept_dims
 from gearidae.archive.target import whole_file
 from gearidae.citing import cite

@@ -21,8 +21,8 @@ from numpy.typing import NDArray
 
 from gearidae.analysis.verdict import START_UP, outcomes
 from gearidae.analysis.verdict.judge import is_scheduled
-from gearidae.archive.pieces import PIECE, Spread, pieces, reached, spread
 from gearidae.archive.select import run_value, runs, scene_of
+from gearidae.archive.slices import SLICE, Spread, reached, slices, spread
 from gearidae.archive.value_text import coverage_text
 from gearidae.archive.variables import SAM_FRACTION
 from gearidae.arrays import Floats
@@ -136,13 +136,13 @@ def runs_of(ds: xr.Dataset, name: str) -> list[Run]:
     drawable = len(kept)
     if drawable > MOST_RUNS:
         judged = outcomes(ds)
-        kept = [kept[number] for number in pick([judged[place].verdict for place in kept], MOST_RUNS)]
+        kept = [kept[number] for number in pick([judged[index].verdict for index in kept], MOST_RUNS)]
     chosen = [everything[number] for number in kept]
     if not chosen:
         raise SceneError("plot", name, "the dataset has no samples of it")
     return [
-        Run(label, run, line_colour(place), line_style(place), drawable, number)
-        for place, (label, number, (_, run)) in enumerate(zip(run_labels(chosen), kept, chosen, strict=True))
+        Run(label, run, line_colour(index), line_style(index), drawable, number)
+        for index, (label, number, (_, run)) in enumerate(zip(run_labels(chosen), kept, chosen, strict=True))
     ]
 
 
@@ -232,13 +232,13 @@ def thin(time: xr.DataArray, values: xr.DataArray, end: int | None = None) -> tu
         return time.variable[:end].values, values.variable[:end].values
     kept = [np.zeros(1, dtype=np.int64)]
     heights = [values.variable[:1].values]
-    for place, part in pieces(values, 0, end, size=max(1, PIECE // size) * size):
+    for offset, part in slices(values, 0, end, size=max(1, SLICE // size) * size):
         whole = len(part) // size * size
         blocks = part[:whole].reshape(-1, size)
         first = np.arange(0, whole, size)
         extremes = np.sort([first + blocks.argmin(axis=1), first + blocks.argmax(axis=1)], axis=0)
         chosen = np.concatenate([extremes.T.ravel(), np.arange(whole, len(part))])
-        kept.append(place + chosen)
+        kept.append(offset + chosen)
         heights.append(part[chosen])
     places, once = np.unique(np.concatenate(kept), return_index=True)
     return _picked(time, places), np.concatenate(heights)[once]
@@ -361,13 +361,14 @@ def legend(ax: Axes, runs: Sequence[Run]) -> None:
 
 
 def _has_samples(values: xr.DataArray) -> bool:
-    return any(bool(np.isfinite(part).any()) for _, part in pieces(values))
+    return any(bool(np.isfinite(part).any()) for _, part in slices(values))
 
 
-def _picked(time: xr.DataArray, places: NDArray[np.int64]) -> Floats:
-    """Values at some places in increasing order, read piece by piece."""
+def _picked(time: xr.DataArray, samples: NDArray[np.int64]) -> Floats:
+    """Values of some samples in increasing order, read piece by piece."""
     parts = [
-        part[places[(places >= place) & (places < place + len(part))] - place] for place, part in pieces(time)
+        part[samples[(samples >= offset) & (samples < offset + len(part))] - offset]
+        for offset, part in slices(time)
     ]
     return np.concatenate(parts)
 

@@ -136,12 +136,12 @@ class MapModel:
         """
         if self.torques is None:
             return self.sequences[0], self.spread[0], self.speeds[0]
-        place = int(np.clip(np.searchsorted(self.torques, torque) - 1, 0, len(self.torques) - 2))
-        low, high = np.log(self.torques[place : place + 2])
+        index = int(np.clip(np.searchsorted(self.torques, torque) - 1, 0, len(self.torques) - 2))
+        low, high = np.log(self.torques[index : index + 2])
         part = (math.log(torque) - low) / (high - low)
-        lower, upper = self.sequences[place], self.sequences[place + 1]
-        speeds = self.speeds[place] ** (1.0 - part) * self.speeds[place + 1] ** part
-        spread = (1.0 - part) * self.spread[place] + part * self.spread[place + 1]
+        lower, upper = self.sequences[index], self.sequences[index + 1]
+        speeds = self.speeds[index] ** (1.0 - part) * self.speeds[index + 1] ** part
+        spread = (1.0 - part) * self.spread[index] + part * self.spread[index + 1]
         return lower + part * (upper - lower), spread, speeds
 
     def torque_at(self, speed: float) -> float:
@@ -152,9 +152,9 @@ class MapModel:
         if self.torques is None:
             raise ValueError("the map holds one torque")
         known, at = np.log(np.nanmedian(self.speeds, axis=1)), np.log(self.torques)
-        place = int(np.clip(np.searchsorted(known, math.log(speed)) - 1, 0, len(known) - 2))
-        slope = (at[place + 1] - at[place]) / (known[place + 1] - known[place])
-        return float(math.exp(at[place] + slope * (math.log(speed) - known[place])))
+        index = int(np.clip(np.searchsorted(known, math.log(speed)) - 1, 0, len(known) - 2))
+        slope = (at[index + 1] - at[index]) / (known[index + 1] - known[index])
+        return float(math.exp(at[index] + slope * (math.log(speed) - known[index])))
 
 
 def require_map(chart: object) -> xr.Dataset:
@@ -419,9 +419,9 @@ def _continue(row: Floats, values: Floats) -> None:
         growing = min(2.0, max(1.0, float(steps[0] / steps[1])))
     if len(steps) > 1 and steps[-1] * steps[-2] > 0.0:
         fading = min(1.0, float(steps[-1] / steps[-2]))
-    for place in range(BEFORE + count, min(BEFORE + count + AFTER, len(row))):
+    for index in range(BEFORE + count, min(BEFORE + count + AFTER, len(row))):
         ahead *= fading
-        row[place] = row[place - 1] + ahead
-    for place in range(BEFORE - 1, -1, -1):
+        row[index] = row[index - 1] + ahead
+    for index in range(BEFORE - 1, -1, -1):
         behind *= growing
-        row[place] = row[place + 1] - behind
+        row[index] = row[index + 1] - behind

@@ -11,10 +11,10 @@ import numpy as np
 import xarray as xr
 
 from gearidae.analysis.signal import signals, to_si
-from gearidae.archive.library import loaded
+from gearidae.archive.netcdf_access import loaded
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
-from gearidae.monitor.record_columns import Column, Wanted, find_columns, has_columns, numbered_places
+from gearidae.monitor.record_columns import Column, Wanted, find_columns, has_columns, numbered_positions
 from gearidae.monitor.record_formats import frame_from, unpacked
 from gearidae.scene.carried import numbers_of
 from gearidae.scene.group import shorten
@@ -200,7 +200,7 @@ def _from_frame(frame: Any, wanted: Wanted, step: float | None) -> xr.Dataset:
         for name, kind in zip(frame.columns, kinds, strict=True)
     ]
     columns = find_columns(names, wanted)
-    return _dataset([frame.iloc[:, column.place] for column in columns], columns, (), step)
+    return _dataset([frame.iloc[:, column.position] for column in columns], columns, (), step)
 
 
 def _from_text(source: Path, wanted: Wanted, reading: Mapping[str, Any], step: float | None) -> xr.Dataset:
@@ -216,7 +216,7 @@ def _from_text(source: Path, wanted: Wanted, reading: Mapping[str, Any], step: f
             raise
         columns = find_columns(table.headings, wanted)
     numbers, said, start = (
-        table.numbers([column.place for column in columns], holes=True, undefined=True),
+        table.numbers([column.position for column in columns], holes=True, undefined=True),
         table.recognised,
         0.0,
     )
@@ -239,7 +239,7 @@ def _opened(source: Path, wanted: Wanted, reading: Mapping[str, Any]) -> TextTab
         decimal=_decimal(reading["decimal"]),
         skip=None if reading["skip"] is None else whole("skip", reading["skip"], 0),
         unit_row=True,
-        places=numbered_places(wanted),
+        columns=numbered_positions(wanted),
     )
 
 

@@ -33,7 +33,7 @@ class Column(NamedTuple):
 
     meaning: str
     heading: str
-    place: int
+    position: int
     unit: str
     recognised: bool = False
 
@@ -42,13 +42,13 @@ def has_columns(headings: Sequence[str], wanted: Wanted) -> bool:
     """Whether texts are headings of a table with the wanted columns."""
     asked = [name for name in wanted.values() if name is not None]
     if asked:
-        return all(_place_of(headings, name) is not None for name in asked)
+        return all(_position_of(headings, name) is not None for name in asked)
     named = [_named(headings, meaning) for meaning in wanted]
     return all(named) or all(len(_measured(headings, meaning)) == 1 for meaning in wanted)
 
 
-def numbered_places(wanted: Wanted) -> list[int] | None:
-    """Return the places of columns that are all given by their numbers; else None."""
+def numbered_positions(wanted: Wanted) -> list[int] | None:
+    """Return the positions of columns that are all given by their numbers; else None."""
     numbers = [None if name is None else _number(name) for name in wanted.values()]
     return None if None in numbers else [number - 1 for number in numbers if number is not None]
 
@@ -83,35 +83,37 @@ def _number(name: str) -> int | None:
     return int(bare) if bare.isdecimal() and 0 < len(bare) < _LONGEST_NUMBER and int(bare) else None
 
 
-def _place_of(headings: Sequence[str], name: str) -> int | None:
+def _position_of(headings: Sequence[str], name: str) -> int | None:
     """Find a column by its heading, by that without its unit, or by its number."""
-    place, number = column_of(headings, name), _number(name)
-    if place is None:
-        place = column_of([split_unit(heading)[0] for heading in headings], name)
-    if place is None and number is not None and (not headings or number <= len(headings)):
+    position, number = column_of(headings, name), _number(name)
+    if position is None:
+        position = column_of([split_unit(heading)[0] for heading in headings], name)
+    if position is None and number is not None and (not headings or number <= len(headings)):
         return number - 1
-    return place
+    return position
 
 
 def _given(headings: Sequence[str], meaning: str, name: str) -> Column:
-    place = _place_of(headings, name)
-    if place is None:
+    position = _position_of(headings, name)
+    if position is None:
         raise ValueError(f"has no column {name!r}, or more than one, among {listed(headings)}")
-    heading, unit = headings[place] if headings else f"column {place + 1}", split_unit(name)[1]
+    heading, unit = headings[position] if headings else f"column {position + 1}", split_unit(name)[1]
     heading_unit = split_unit(heading)[1]
     # the unit of a voltage is replaced
     if heading_unit and unit and heading_unit != unit and _fits(heading_unit, _UNITS[meaning]):
         raise ValueError(f"the column {heading!r} is not in {unit}: leave the unit out")
     if not (unit := unit or heading_unit):
         raise ValueError(f"{name!r} states no unit: give it in brackets, as in {name + ' [ms]'!r}")
-    return Column(meaning, heading, place, unit)
+    return Column(meaning, heading, position, unit)
 
 
 def _recognised(headings: Sequence[str], meaning: str) -> Column:
     """Find a column by its name, or else as the only one with a unit that fits."""
     named = _named(headings, meaning)
     if len(named) > 1:
-        raise ValueError(f"has two columns for {meaning}, {listed([headings[place] for place in named])}")
+        raise ValueError(
+            f"has two columns for {meaning}, {listed([headings[position] for position in named])}"
+        )
     if named:
         bare, unit = split_unit(headings[named[0]])
         if not unit:
@@ -129,12 +131,12 @@ def _recognised(headings: Sequence[str], meaning: str) -> Column:
 
 def _named(headings: Sequence[str], meaning: str) -> list[int]:
     bare = [split_unit(heading)[0].lower().replace(" ", "_") for heading in headings]
-    return [place for place, name in enumerate(bare) if name in _NAMES[meaning]]
+    return [position for position, name in enumerate(bare) if name in _NAMES[meaning]]
 
 
 def _measured(headings: Sequence[str], meaning: str) -> list[int]:
     units = [split_unit(heading)[1] for heading in headings]
-    return [place for place, unit in enumerate(units) if unit and _fits(unit, _UNITS[meaning])]
+    return [position for position, unit in enumerate(units) if unit and _fits(unit, _UNITS[meaning])]
 
 
 def _fits(unit: str, wanted: str) -> bool:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearidae.archive.keep import OutputSelection
+from gearidae.archive.output_selection import OutputSelection
 from gearidae.archive.sample_table import SampleTable
 from gearidae.archive.stack import stack
 from gearidae.archive.variables import VERDICT

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.archive.journal import Journal, journal_of
-from gearidae.archive.keep import EVERYTHING, OutputSelection
+from gearidae.archive.output_selection import EVERYTHING, OutputSelection
 from gearidae.archive.provenance import SCHEMA_VERSION, provenance
 from gearidae.archive.variables import VERDICT
 from gearidae.errors import SceneError

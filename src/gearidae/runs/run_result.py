@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from gearidae.analysis.verdict.judge import verdict_of
-from gearidae.archive.keep import OutputSelection
+from gearidae.archive.output_selection import OutputSelection
 from gearidae.errors import SceneError
 from gearidae.records import Solution
 from gearidae.runs.running import solve, unsolved

@@ -8,7 +8,7 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from concurrent.futures import Executor
 from typing import TYPE_CHECKING, Any
 
-from gearidae.archive.keep import EVERYTHING, OutputSelection, read_keep
+from gearidae.archive.output_selection import EVERYTHING, OutputSelection, read_keep
 from gearidae.errors import Interrupted
 from gearidae.progress import SweepProgress, sweep_progress
 from gearidae.runs.batch import Batch

@@ -18,8 +18,8 @@ from gearidae.scene.scene import (
     is_long_train,
     require_gears,
 )
+from gearidae.scene.scene_display import differences, nearest_preset
 from gearidae.scene.shafts import Meshing, Shaft
-from gearidae.scene.shown import differences, nearest_preset
 from gearidae.scene.surface import Contact, Surface
 from gearidae.scene.torque import Drive, Harmonic, Load
 

@@ -71,22 +71,22 @@ def _column(path: Path) -> tuple[float, ...]:
         table = open_table(
             path,
             largest=_LARGEST,
-            names=lambda headings: _place(headings) is not None,
+            names=lambda headings: _error_column(headings) is not None,
             unit_row=True,
         )
-        place = _place(table.headings)
-        if place is None:
+        index = _error_column(table.headings)
+        if index is None:
             raise ValueError(f"must have one column, or a column {_NAME!r} among {listed(table.headings)}")
-        unit = split_unit(table.headings[place])[1]
+        unit = split_unit(table.headings[index])[1]
         if not unit:
-            raise ValueError(f"column {table.headings[place]!r} needs its unit, such as '{_NAME} [nm]'")
-        cells = table.numbers([place], most=_MOST_TEETH)[:, 0]
+            raise ValueError(f"column {table.headings[index]!r} needs its unit, such as '{_NAME} [nm]'")
+        cells = table.numbers([index], most=_MOST_TEETH)[:, 0]
         return tuple(numbers_of(cells, "m", unit).tolist())
     except (OSError, ValueError) as error:
         raise ValueError(f"the file {path.name}: {error}") from None
 
 
-def _place(headings: Sequence[str]) -> int | None:
+def _error_column(headings: Sequence[str]) -> int | None:
     """Place of the column of errors: the only one, or the one of that name."""
     if len(headings) == 1:
         return 0

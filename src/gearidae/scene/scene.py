@@ -13,6 +13,7 @@ from gearidae.scene.asperity_list import check_asperities
 from gearidae.scene.coating import Coating, Material, materials_of
 from gearidae.scene.coating_table import check_tables
 from gearidae.scene.combinations import check_combinations
+from gearidae.scene.display import as_html, as_line
 from gearidae.scene.friction import check_friction, check_no_friction
 from gearidae.scene.gears import Gears, Mesh
 from gearidae.scene.group import Group, shorten
@@ -32,7 +33,6 @@ from gearidae.scene.roughnesses import InRoughnesses
 from gearidae.scene.run import Initial, Roller, Run
 from gearidae.scene.schema import json_schema
 from gearidae.scene.shafts import Meshing, Shaft
-from gearidae.scene.showing import as_html, as_line
 from gearidae.scene.strip import check_population
 from gearidae.scene.surface import Contact, Surface
 from gearidae.scene.surface_library import library_changes, with_library

@@ -127,7 +127,7 @@ def _columns(table: Mapping[str, Any], source: str, units: tuple[str, str]) -> l
         if not (hasattr(frame, "columns") and hasattr(frame, "iloc")):
             raise ValueError("data must be a DataFrame")
         names = [str(name).strip() for name in frame.columns]
-        columns = [(name, frame.iloc[:, place]) for name, place in _wanted(table, names)]
+        columns = [(name, frame.iloc[:, index]) for name, index in _wanted(table, names)]
     elif "time" in table and "value" in table:
         columns = [(key, table[key]) for key in ("time", "value")]
     else:
@@ -147,7 +147,7 @@ def _of_file(table: Mapping[str, Any], units: tuple[str, str]) -> list[Floats]:
     try:
         opened = open_table(path, largest=_LARGEST, names=names, unit_row=True)
         wanted = _wanted(table, opened.headings)
-        columns = opened.numbers([place for _, place in wanted], most=MOST_KNOTS).T
+        columns = opened.numbers([index for _, index in wanted], most=MOST_KNOTS).T
         return [
             _numbers(name, cells, unit) for (name, _), cells, unit in zip(wanted, columns, units, strict=True)
         ]
@@ -164,11 +164,11 @@ def _wanted(table: Mapping[str, Any], names: Sequence[str]) -> list[tuple[str, i
         if not isinstance(table.get(key), str):
             raise ValueError(f"{key} must be the name of a column, one of {listed(names)}")
         name = table[key].strip()
-        place = column_of(names, name)
-        if place is None:
+        index = column_of(names, name)
+        if index is None:
             problem = "stands more than once among" if list(names).count(name) > 1 else "is not among"
             raise ValueError(f"column {name[:60]!r} {problem} the columns, {listed(names)}")
-        columns.append((name if split_unit(name)[1] else names[place], place))
+        columns.append((name if split_unit(name)[1] else names[index], index))
     return columns
 
 

@@ -49,7 +49,7 @@ def open_table(
     decimal: str | None = None,
     skip: int | None = None,
     unit_row: bool = False,
-    places: Sequence[int] | None = None,
+    columns: Sequence[int] | None = None,
 ) -> TextTable:
     """Read what stands above the first row of a table.
 
@@ -68,8 +68,8 @@ def open_table(
         Lines above that of the headings.
     unit_row : bool, optional
         Whether the line below headings without units may hold these.
-    places : sequence of int, optional
-        Columns of numbers by their places, for a table whose headings are not read: it begins with the first rows that
+    columns : sequence of int, optional
+        Columns of numbers, counted from 0, for a table whose headings are not read: it begins with the first rows that
         hold numbers in all of them.
 
     Raises
@@ -91,8 +91,8 @@ def open_table(
     if not plain:
         raise ValueError("is empty: it has no row")
     heading, rows = None, plain
-    if places is not None:
-        rows = _from_first_row(plain, places, delimiter, decimal)
+    if columns is not None:
+        rows = _from_first_row(plain, columns, delimiter, decimal)
     elif names is not None:
         heading = _heading(lines, names, delimiter, is_first=skip is not None)
         rows = [line for line in plain if line.number > heading.number]
@@ -191,17 +191,19 @@ def _headings(text: str, delimiter: str) -> tuple[str, ...]:
 
 
 def _from_first_row(
-    lines: list[_Line], places: Sequence[int], delimiter: str | None, decimal: str | None
+    lines: list[_Line], columns: Sequence[int], delimiter: str | None, decimal: str | None
 ) -> list[_Line]:
-    """Find the first rows that hold numbers at some places; lines above a table may do so by chance."""
+    """Find the first rows that hold numbers in some columns; lines above a table may do so by chance."""
     for first in range(len(lines)):
         texts = [line.text for line in lines[first : first + _ROWS_IN_TURN]]
         between = _delimiter(texts) if delimiter is None else delimiter
         point = _decimal(texts, between) if decimal is None else decimal
         rows = [_split(text, between) for text in texts]
-        if all(as_number("".join(row[k : k + 1] or "?"), point) is not None for row in rows for k in places):
+        if all(as_number("".join(row[k : k + 1] or "?"), point) is not None for row in rows for k in columns):
             return lines[first:]
-    raise ValueError(f"has no rows with numbers in column {' and '.join(str(place + 1) for place in places)}")
+    raise ValueError(
+        f"has no rows with numbers in column {' and '.join(str(column + 1) for column in columns)}"
+    )
 
 
 def _with_cells(headings: tuple[str, ...], row: list[str]) -> tuple[str, ...]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from gearidae.archive.rows import LABELS, kinds_in, own_rows
+from gearidae.archive.row_variables import LABELS, kinds_in, own_rows
 from gearidae.archive.run_summary import RunSummary, summary_of
 from gearidae.archive.select import is_roller, run_scene, runs, scene_of, single_run, swept_dims
 from gearidae.archive.tables import LARGEST_TABLE, row_table, run_labels, time_series

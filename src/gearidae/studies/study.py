@@ -17,8 +17,8 @@ import xarray as xr
 
 from gearidae.archive.agreement import disagreement
 from gearidae.archive.attributes import readable_scene
-from gearidae.archive.keep import EVERYTHING, OutputSelection
-from gearidae.archive.library import loaded
+from gearidae.archive.netcdf_access import loaded
+from gearidae.archive.output_selection import EVERYTHING, OutputSelection
 from gearidae.errors import SceneError
 
 if TYPE_CHECKING:

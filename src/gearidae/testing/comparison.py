@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import numpy as np
 import xarray as xr
 
-from gearidae.archive.rows import DIMS
+from gearidae.archive.row_variables import DIMS
 from gearidae.archive.select import run_scene, run_value, runs, swept_dims
 from gearidae.archive.totals import balance_of
 from gearidae.archive.variables import ENERGY_BALANCE, EVENTS, EXTREMES, OF_SWEPT_RUN, ROW_VARIABLES, RUN
@@ -116,10 +116,10 @@ def _require_same_labels(a: xr.Dataset, b: xr.Dataset) -> None:
             else np.isclose(labels, other_labels, rtol=1e-9, atol=0.0)
         )
         if not same.all():
-            place = int(np.flatnonzero(~same)[0])
+            position = int(np.flatnonzero(~same)[0])
             raise SceneError(
                 "compare",
-                f"{name} {labels[place]} and {other_labels[place]}",
+                f"{name} {labels[position]} and {other_labels[position]}",
                 "must have the same values in both datasets",
             )
 
@@ -207,18 +207,18 @@ def _duration(run: xr.Dataset) -> float:
 
 
 def _largest(a: Floats, b: Floats, scale: float | None = None) -> Difference:
-    """Largest difference of two arrays, without its place; NaN equals NaN."""
+    """Largest difference of two arrays, without its position; NaN equals NaN."""
     difference, _ = _where_largest(a, b)
     size = scale if scale is not None else _size(a, b)
     return Difference(difference, size, _relative(difference, size), "")
 
 
 def _of_samples(a: xr.DataArray, b: xr.DataArray) -> Difference:
-    """Largest difference of a variable along any dimensions, with the labels of its place."""
+    """Largest difference of a variable along any dimensions, with the labels of its position."""
     values, other_values = np.asarray(a.values, dtype=float), np.asarray(b.values, dtype=float)
-    difference, place = _where_largest(values, other_values)
+    difference, position = _where_largest(values, other_values)
     size = _size(values, other_values)
-    labels = dict(zip(map(str, a.dims), place, strict=True))
+    labels = dict(zip(map(str, a.dims), position, strict=True))
     return Difference(
         difference,
         size,
@@ -227,24 +227,24 @@ def _of_samples(a: xr.DataArray, b: xr.DataArray) -> Difference:
     )
 
 
-def _label(variable: xr.DataArray, dim: Hashable, place: int) -> str:
+def _label(variable: xr.DataArray, dim: Hashable, position: int) -> str:
     if dim not in variable.coords:
-        return f"{dim} {place}"
-    value = variable[dim].values[place]
+        return f"{dim} {position}"
+    value = variable[dim].values[position]
     unit = variable[dim].attrs.get("units", "1")
     shown = f"{value:.6g}" if isinstance(value, np.floating) else str(value)
     return f"{dim}={shown}" + (f" {unit}" if unit != "1" else "")
 
 
 def _where_largest(a: Floats, b: Floats) -> tuple[float, tuple[int, ...]]:
-    """Size and place of the largest difference; infinite where only one is NaN."""
+    """Size and position of the largest difference; infinite where only one is NaN."""
     if not a.size:
         return 0.0, (0,) * a.ndim
     with np.errstate(invalid="ignore"):
         apart = np.abs(a - b)
     apart = np.where((np.isnan(a) & np.isnan(b)) | (a == b), 0.0, np.where(np.isnan(apart), np.inf, apart))
-    place = np.unravel_index(int(np.argmax(apart)), apart.shape)
-    return float(apart[place]), tuple(int(index) for index in place)
+    position = np.unravel_index(int(np.argmax(apart)), apart.shape)
+    return float(apart[position]), tuple(int(index) for index in position)
 
 
 def _size(a: Floats, b: Floats) -> float:
@@ -273,8 +273,8 @@ def _of_events(a: xr.Dataset, b: xr.Dataset) -> Difference:
         first = int(np.flatnonzero(other)[0]) if other.any() else common
         words = " and ".join(_event_words(run, first) for run in (a, b))
         return Difference(math.inf, span, math.inf, f"event {first}: {words}")
-    difference, place = _where_largest(a["event_time"].values, b["event_time"].values)
-    at = f"in order, event {place[0]}: {_event_words(a, place[0])}" if common else "in order, no events"
+    difference, position = _where_largest(a["event_time"].values, b["event_time"].values)
+    at = f"in order, event {position[0]}: {_event_words(a, position[0])}" if common else "in order, no events"
     return Difference(difference, span, _relative(difference, span), at)
 
 

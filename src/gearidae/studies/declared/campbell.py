@@ -15,7 +15,7 @@ import xarray as xr
 
 from gearidae.analysis.ringing import HIGHEST
 from gearidae.analysis.spectra import power_spectrum
-from gearidae.archive.keep import read_keep
+from gearidae.archive.output_selection import read_keep
 from gearidae.archive.provenance import provenance
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final, Unpack
 import numpy as np
 import xarray as xr
 
-from gearidae.archive.keep import OutputSelection, read_keep
+from gearidae.archive.output_selection import OutputSelection, read_keep
 from gearidae.archive.provenance import provenance
 from gearidae.archive.variables import by_name
 from gearidae.arrays import Floats

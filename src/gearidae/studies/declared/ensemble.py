@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, Unpack
 import numpy as np
 import xarray as xr
 
-from gearidae.archive.keep import read_keep
+from gearidae.archive.output_selection import read_keep
 from gearidae.archive.specimen import SEED_KEYS, has_seeds
 from gearidae.archive.variables import extreme_names
 from gearidae.arrays import Floats

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, Unpack
 import numpy as np
 import xarray as xr
 
-from gearidae.archive.keep import read_keep
+from gearidae.archive.output_selection import read_keep
 from gearidae.archive.provenance import provenance
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError

@@ -109,15 +109,15 @@ def run_turns(scene: GearScene, turns: Turns, backend: str) -> tuple[Solution, s
 
 
 def _measured(scene: GearScene, turns: Turns, backend: str) -> tuple[Solution, str]:
-    before, place = _solved(scene, backend), scene
+    before, block = _solved(scene, backend), scene
     start, rate = engine.AT_ONCE, _late_rate(before, scene)
     blocks: list[Floats] = []
     while rate > 0.0 and not _stands(before):
         assert before.checkpoint is not None
-        start = engine.end_of(place, before.checkpoint, start.time)
-        place = _block(scene, turns, rate)
-        after = _solved(place, backend, start)
-        slid, took, turned = _gained(after, before, start, place)
+        start = engine.end_of(block, before.checkpoint, start.time)
+        block = _block(scene, turns, rate)
+        after = _solved(block, backend, start)
+        slid, took, turned = _gained(after, before, start, block)
         if turned < turns.count * (1.0 - 1e-6):
             before = after
             break

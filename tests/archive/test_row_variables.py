@@ -8,8 +8,8 @@ import xarray as xr
 
 import gearidae as gd
 from gearidae.archive import combine, to_dataset
-from gearidae.archive.keep import read_keep
-from gearidae.archive.rows import rows_from
+from gearidae.archive.output_selection import read_keep
+from gearidae.archive.row_variables import rows_from
 from gearidae.archive.select import runs
 from gearidae.records import Events, Passages
 from gearidae.scene.sampled import rows_of

@@ -7,10 +7,10 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
+from gearidae.scene.display import as_html, as_line
 from gearidae.scene.prefixes import with_prefix
 from gearidae.scene.presets import PRESETS, preset
 from gearidae.scene.scene import Scene, describe_key
-from gearidae.scene.showing import as_html, as_line
 
 _NEAR: Final = 12
 """Keys in which a scene may differ from a preset that it is compared with."""

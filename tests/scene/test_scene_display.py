@@ -8,7 +8,7 @@ from html.parser import HTMLParser
 import pytest
 
 from gearidae.scene import PRESETS, preset
-from gearidae.scene.shown import differences, nearest_preset, value_text
+from gearidae.scene.scene_display import differences, nearest_preset, value_text
 
 WORN = preset("teodorescu2009_low_speed").replace({"name": "worn", "coating.sam_fraction": 0.5})
 

@@ -17,9 +17,9 @@ import pytest
 import xarray as xr
 
 import gearidae as gd
-from gearidae.archive import library, save
-from gearidae.archive.library import LIBRARY, loaded, uninterrupted
+from gearidae.archive import netcdf_access, save
 from gearidae.archive.netcdf import CheckedStore
+from gearidae.archive.netcdf_access import LIBRARY, loaded, uninterrupted
 from gearidae.cli import main
 
 
@@ -140,14 +140,14 @@ def locked(path, seconds):
 
 
 def test_a_lock_that_a_process_inherited_is_waited_for(ds, tmp_path, monkeypatch):
-    monkeypatch.setattr(library, "_PATIENCE", 30.0)  # the process may be kept waiting itself
+    monkeypatch.setattr(netcdf_access, "_PATIENCE", 30.0)  # the process may be kept waiting itself
     path = gd.save(ds, tmp_path / "roller.nc")
     with locked(path, 0.2):
         xr.testing.assert_identical(gd.open_archive(path), ds)
 
 
 def test_a_lock_that_lasts_is_an_error(ds, tmp_path, monkeypatch):
-    monkeypatch.setattr(library, "_PATIENCE", 0.5)
+    monkeypatch.setattr(netcdf_access, "_PATIENCE", 0.5)
     path = gd.save(ds, tmp_path / "roller.nc")
     with locked(path, 60.0), pytest.raises(gd.SceneError, match="damaged or not a netCDF4 file"):
         gd.open_archive(path)
