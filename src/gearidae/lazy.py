@@ -1,6 +1,6 @@
 """Public names that are loaded on first use (PEP 562), so that importing a package takes next to no time.
 
-Likewise a call as soon as another package has been imported, without importing it.
+And a call as soon as another package has been imported, without importing it.
 """
 
 from __future__ import annotations

@@ -28,7 +28,7 @@ from gearidae.archive.disk import sync
 SIGNATURE: Final = b"gearidae journal 1\n"
 """How the file begins; the number is that of the layout."""
 _PREAMBLE: Final = struct.Struct("<4sIQII")
-"""Before each frame: mark, bytes of the header, bytes of the arrays, CRC-32 of both, and of the lead before that."""
+"""Before each frame: mark, bytes of the header, bytes of the arrays, CRC-32 of both, and of the preamble itself."""
 _MARK: Final = b"\x93frm"
 _TYPES: Final = {"f": "<f8", "u": "<u8"}
 _CHUNK: Final = 2**20
@@ -246,7 +246,7 @@ class Journal:
 
 
 def _packed(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> list[Any]:
-    """Bytes of a frame: lead, header, and each array."""
+    """Bytes of a frame: preamble, header, and each array."""
     parts = {name: np.ascontiguousarray(values, _TYPES[values.dtype.kind]) for name, values in arrays.items()}
     layout = [[name, part.dtype.str, part.shape] for name, part in parts.items()]
     text = json.dumps({**header, "arrays": layout}, default=_plain).encode()

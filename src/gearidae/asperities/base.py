@@ -89,7 +89,7 @@ class AsperityLaw(ABC):
 
     @property
     def kink(self) -> float:
-        """The same square root at the kink, if that lies between detachment and joining; 1 else."""
+        """``sqrt((touch + detach) / (detach - join))``, if the kink lies between detachment and joining; 1 else."""
         if not -self.detach < self.touch < -self.join:
             return 1.0
         return math.sqrt((self.touch + self.detach) / (self.detach - self.join))

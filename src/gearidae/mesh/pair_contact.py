@@ -160,14 +160,14 @@ class PairContact:
             if at.size < 2:
                 continue
             forces = self.force(at)
-            spent = np.cumsum(0.5 * (forces[1:] + forces[:-1]) * -np.diff(at))
-            stopped = np.flatnonzero(spent >= left)
+            work = np.cumsum(0.5 * (forces[1:] + forces[:-1]) * -np.diff(at))
+            stopped = np.flatnonzero(work >= left)
             if stopped.size:
                 k = int(stopped[0])
-                before = spent[k - 1] if k else 0.0
-                share = (left - before) / (spent[k] - before) if spent[k] > before else 0.0
+                before = work[k - 1] if k else 0.0
+                share = (left - before) / (work[k] - before) if work[k] > before else 0.0
                 return float(at[k] + share * (at[k + 1] - at[k]))
-            height, left = float(at[-1]), left - float(spent[-1])
+            height, left = float(at[-1]), left - float(work[-1])
         return math.nan
 
     def stiffness(self, gap: float) -> float:

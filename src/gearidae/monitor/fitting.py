@@ -96,7 +96,7 @@ class RingSet:
         return COMMON * max(1.0, self.calibration / CALIBRATION)
 
     def without_first(self) -> RingSet:
-        """The same without the first impact that rings."""
+        """Rings of all impacts but the first that rings."""
         later = {name: getattr(self, name)[1:] for name in ("numbers", "frequency", "uncertainty")}
         return replace(self, **later)
 

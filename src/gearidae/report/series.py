@@ -24,7 +24,7 @@ MOST_OF_MANY = 500_000
 _MOST_EVENTS = 2000
 """Times of contacts made, and broken, of a run."""
 _MOST_OF_ALL = 14_000
-"""Those of all runs."""
+"""Times of contacts made, and broken, of all runs."""
 _SHOWN_FIRST = ("gear_speed", "gear_contact_torque", "height", "force")
 
 

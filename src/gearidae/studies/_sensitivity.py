@@ -234,8 +234,8 @@ def _truncation(differences: Floats, values: Floats, figure: float, steps: Float
     """
     apart = np.abs(np.diff(differences))
     worse = np.maximum(apart, 0.25 * np.concatenate([apart[:1], apart[:-1]]))
-    bend = (values.sum(axis=1) - 2.0 * figure) / steps  # difference of the one-sided slopes
-    corner = 0.5 * np.abs(2.0 * bend[1:] - bend[:-1])  # what is not in proportion to the step
+    curvature = (values.sum(axis=1) - 2.0 * figure) / steps  # difference of the one-sided slopes
+    corner = 0.5 * np.abs(2.0 * curvature[1:] - curvature[:-1])  # what is not in proportion to the step
     # beside a corner a single such value may vanish by chance, not two in a row
     corner = np.maximum(corner, 0.25 * np.concatenate([corner[:1], corner[:-1]]))
     worse = np.maximum(worse, corner)

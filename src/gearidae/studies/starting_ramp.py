@@ -34,7 +34,7 @@ DAMPING: Final = 0.03
 PACE: Final = 0.005
 """Rise of the torque, over the scale of the starting torques, in the time of a pitch at that torque."""
 _PILOT_PACE: Final = 0.02
-"""The same of a pilot, at each torque."""
+"""Rise of the torque of a pilot, over each of its torques, in the time of a pitch."""
 _PILOT_TORQUE: Final = 1e-5
 """Torque with which a pilot begins, over that of the smallest pull-off load at the pinion's base circle."""
 _OCTAVES: Final = 30
