@@ -28,7 +28,7 @@ from gearidae.archive.disk import sync
 SIGNATURE: Final = b"gearidae journal 1\n"
 """How the file begins; the number is that of the layout."""
 _PREAMBLE: Final = struct.Struct("<4sIQII")
-"""Before each frame: mark, bytes of the header, bytes of the arrays, CRC-32 of both, and of the preamble itself."""
+"""Before each frame: mark, bytes of the header, bytes of the arrays, CRC-32 of both, and of what precedes it."""
 _MARK: Final = b"\x93frm"
 _TYPES: Final = {"f": "<f8", "u": "<u8"}
 _CHUNK: Final = 2**20

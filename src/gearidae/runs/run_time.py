@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 _STEPS_A_PERIOD: Final = 15.0
 """Steps for each oscillation on approaching flanks at a relative tolerance of 1e-6, turning points included."""
 _STEPS_A_BOUNCE: Final = 2.5
-"""Steps for each oscillation of gears that start pressed together and fly between the flanks: 1 to 6 in drawn scenes."""
+"""Steps for each oscillation of gears that start pressed together and fly to and fro: 1 to 6 in drawn scenes."""
 _STEPS_OF_ONE: Final = 30.0
 """Steps for each oscillation of gears on real asperities: 16 to 40 in drawn scenes."""
 _STEPS_A_PASSAGE: Final = 50.0
