@@ -18,7 +18,7 @@ from xarray.backends.netCDF4_ import NetCDF4ArrayWrapper
 
 import gearidae as gd
 from gearidae.analysis.verdict import outcomes
-from gearidae.archive import definition, netcdf, save, slices, time_index, to_dataset, unfinished
+from gearidae.archive import definition, netcdf, pieces, save, time_index, to_dataset, unfinished
 from gearidae.archive import run_summary as summary_module
 from gearidae.archive.row_variables import DIMS
 from gearidae.archive.unfinished import RunJournal
@@ -37,17 +37,17 @@ LOW = gd.preset("teodorescu2009_low_speed").replace({"run.samples": SAMPLES})
 
 @pytest.fixture
 def lengths(monkeypatch):
-    """Make slices small, and note how many values each read of a file fetches."""
+    """Make pieces small, and note how many values each read of a file fetches."""
     for module, name, value in (
         (netcdf, "LONGEST_WHOLE", 0),
         (definition, "LONGEST_WHOLE", 0),
         (netcdf, "LARGEST_IN_MEMORY", PIECE),
         (unfinished, "LARGEST_IN_MEMORY", PIECE),
         (time_index, "LARGEST_IN_MEMORY", PIECE),
-        (slices, "SLICE", PIECE),
-        (style, "SLICE", PIECE),
-        (series, "SLICE", PIECE),
-        (summary_module, "SLICE", PIECE),
+        (pieces, "PIECE", PIECE),
+        (style, "PIECE", PIECE),
+        (series, "PIECE", PIECE),
+        (summary_module, "PIECE", PIECE),
         (style, "_MOST_POINTS", DRAWN),
         (spectra, "_MOST_SAMPLES", ANALYSED),
         (page_module, "pack_runs", partial(pack_runs, most_states=300)),  # which take the most time
@@ -161,20 +161,20 @@ def test_the_journal_of_a_run(make_solution, tmp_path, lengths, monkeypatch):
 @pytest.mark.parametrize("size", [1, 7, 512, 10**6])
 def test_pieces(size, monkeypatch):
     """However it is cut, a variable has one spread, one end, one first value above a level."""
-    monkeypatch.setattr(slices, "SLICE", size)
+    monkeypatch.setattr(pieces, "PIECE", size)
     values = np.random.default_rng(3).normal(size=1000)
     values[900:] = np.nan
     array = xr.DataArray(values, dims="time")
-    statistics = slices.spread(array, 5, 950)
+    statistics = pieces.spread(array, 5, 950)
     assert (statistics.number, statistics.low, statistics.high) == (
         895,
         values[5:900].min(),
         values[5:900].max(),
     )
     assert statistics.mean == pytest.approx(values[5:900].mean(), rel=1e-12, abs=0)
-    assert slices.reached(array) == 900
-    assert slices.reached(array[:700]) == 700
-    assert slices.reached(array.shift(time=3)) == 903
-    assert slices.reached(array[900:]) == 0
-    assert slices.count(array, values[3]) == 1
-    assert slices.spread(array, 900).number == 0
+    assert pieces.reached(array) == 900
+    assert pieces.reached(array[:700]) == 700
+    assert pieces.reached(array.shift(time=3)) == 903
+    assert pieces.reached(array[900:]) == 0
+    assert pieces.count(array, values[3]) == 1
+    assert pieces.spread(array, 900).number == 0

@@ -122,7 +122,7 @@ def test_adhesion_holds_a_worn_gear_and_lets_a_coated_one_go():
 
 def test_pieces_do_not_matter(braking, monkeypatch):
     whole = summary_of(braking)
-    monkeypatch.setattr(account_module, "SLICE", 1000)
+    monkeypatch.setattr(account_module, "PIECE", 1000)
     pieces = summary_of(braking)
     for name, value in whole.as_plain().items():
         expected = value if isinstance(value, str) else pytest.approx(value, rel=1e-9, abs=1e-24)

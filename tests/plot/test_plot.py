@@ -14,7 +14,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import gearidae as gd
-from gearidae.archive import combine, slices, to_dataset
+from gearidae.archive import combine, to_dataset
+from gearidae.archive import pieces as pieces_module
 from gearidae.drawing import style
 from gearidae.drawing.style import scale_for, thin
 from gearidae.records import GEAR_COLUMNS, ROLLER_COLUMNS, Events, Solution, Statistics
@@ -330,8 +331,8 @@ def test_thinning_does_not_depend_on_how_the_file_is_read(monkeypatch):
         along_time(np.random.default_rng(2).normal(size=8_003)),
     )
     whole = thin(time, values, 8_001)
-    monkeypatch.setattr(style, "SLICE", 1_000)
-    monkeypatch.setattr(slices, "SLICE", 1_000)
+    monkeypatch.setattr(style, "PIECE", 1_000)
+    monkeypatch.setattr(pieces_module, "PIECE", 1_000)
     for piecewise, other in zip(thin(time, values, 8_001), whole, strict=True):
         np.testing.assert_array_equal(piecewise, other)
 

@@ -28,9 +28,9 @@ from gearidae.archive.journal import SIGNATURE, file_of
 from gearidae.archive.lock import is_locked
 from gearidae.archive.netcdf_access import await_lock, check_size, uninterrupted
 from gearidae.archive.output_selection import kept_in
+from gearidae.archive.pieces import reached
 from gearidae.archive.provenance import SCHEMA_VERSION
 from gearidae.archive.row_variables import kinds_in, needed
-from gearidae.archive.slices import reached
 from gearidae.archive.target import as_path, whole_file
 from gearidae.archive.time_index import LARGEST_IN_MEMORY, in_memory, with_times
 from gearidae.archive.train.variables import COORDINATES, MESH_TOTALS, SHAFT_TOTALS, TRAIN_SAMPLES, is_train

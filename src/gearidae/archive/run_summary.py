@@ -16,8 +16,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from gearidae.archive.pieces import PIECE
 from gearidae.archive.select import is_roller, scene_of
-from gearidae.archive.slices import SLICE
 from gearidae.archive.totals import balance_of, extremes_of
 from gearidae.archive.train.variables import is_train
 from gearidae.archive.variables import ENERGY_BALANCE
@@ -172,8 +172,8 @@ def _energies(balance: Mapping[str, float] | None) -> dict[str, float]:
 
 def _pieces(ds: xr.Dataset, dim: str, names: tuple[str, ...]) -> Iterator[dict[str, NDArray[Any]]]:
     """Go through a dimension."""
-    for start in range(0, ds.sizes[dim], SLICE):
-        yield {name: ds[name][start : start + SLICE].values for name in names}
+    for start in range(0, ds.sizes[dim], PIECE):
+        yield {name: ds[name][start : start + PIECE].values for name in names}
 
 
 def _time_to_speed(ds: xr.Dataset, top: float) -> float:

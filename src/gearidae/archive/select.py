@@ -11,9 +11,9 @@ import xarray as xr
 
 from gearidae.archive.attributes import complete_scene
 from gearidae.archive.dataset import dimension_names
+from gearidae.archive.pieces import reached
 from gearidae.archive.provenance import provenance, surface_regimes
 from gearidae.archive.row_variables import DIMS, LABELS, kinds_in, own_rows, row_places
-from gearidae.archive.slices import reached
 from gearidae.archive.variables import EXTREMES, OF_SWEPT_RUN, RUN, SAM_FRACTION, SAMPLES, run_label
 from gearidae.errors import SceneError
 from gearidae.records import sampled_columns

@@ -21,8 +21,8 @@ from numpy.typing import NDArray
 
 from gearidae.analysis.verdict import START_UP, outcomes
 from gearidae.analysis.verdict.judge import is_scheduled
+from gearidae.archive.pieces import PIECE, Spread, pieces, reached, spread
 from gearidae.archive.select import run_value, runs, scene_of
-from gearidae.archive.slices import SLICE, Spread, reached, slices, spread
 from gearidae.archive.value_text import coverage_text
 from gearidae.archive.variables import SAM_FRACTION
 from gearidae.arrays import Floats
@@ -232,7 +232,7 @@ def thin(time: xr.DataArray, values: xr.DataArray, end: int | None = None) -> tu
         return time.variable[:end].values, values.variable[:end].values
     kept = [np.zeros(1, dtype=np.int64)]
     heights = [values.variable[:1].values]
-    for offset, part in slices(values, 0, end, size=max(1, SLICE // size) * size):
+    for offset, part in pieces(values, 0, end, size=max(1, PIECE // size) * size):
         whole = len(part) // size * size
         blocks = part[:whole].reshape(-1, size)
         first = np.arange(0, whole, size)
@@ -361,14 +361,14 @@ def legend(ax: Axes, runs: Sequence[Run]) -> None:
 
 
 def _has_samples(values: xr.DataArray) -> bool:
-    return any(bool(np.isfinite(part).any()) for _, part in slices(values))
+    return any(bool(np.isfinite(part).any()) for _, part in pieces(values))
 
 
 def _picked(time: xr.DataArray, samples: NDArray[np.int64]) -> Floats:
     """Values of some samples in increasing order, read piece by piece."""
     parts = [
         part[samples[(samples >= offset) & (samples < offset + len(part))] - offset]
-        for offset, part in slices(time)
+        for offset, part in pieces(time)
     ]
     return np.concatenate(parts)
 

@@ -16,8 +16,8 @@ from gearidae import analysis
 from gearidae.analysis.ringing import hidden
 from gearidae.analysis.spectra import banded, crowded_from
 from gearidae.analysis.verdict import START_UP
+from gearidae.archive.pieces import pieces, reached
 from gearidae.archive.select import run_scene, runs, scene_of, swept_dims
-from gearidae.archive.slices import reached, slices
 from gearidae.arrays import Floats
 from gearidae.drawing.density import DECADES, draw_density, is_apart, legend_on_density, line_on_density
 from gearidae.drawing.style import (
@@ -437,7 +437,7 @@ def _between(run: xr.Dataset, first: int, end: int) -> xr.Dataset:
     begin, stop = float(part["time"][0]), float(part["time"][-1])
     events = [
         place + np.flatnonzero((times >= begin) & (times <= stop))
-        for place, times in slices(run["event_time"])
+        for place, times in pieces(run["event_time"])
     ]
     return part.isel(event=np.concatenate([*events, np.empty(0, dtype=np.int64)])).load()
 

@@ -11,8 +11,8 @@ import numpy as np
 import xarray as xr
 
 from gearidae.analysis.verdict.headline import headline
+from gearidae.archive.pieces import pieces
 from gearidae.archive.select import first_travel, is_roller, motion_samples, run_scene, runs
-from gearidae.archive.slices import slices
 from gearidae.archive.target import whole_file
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
@@ -201,7 +201,7 @@ def _frames(scene: GearScene, run: xr.Dataset, every: int) -> Floats:
 
 def _picked(values: xr.DataArray, every: int, count: int) -> Floats:
     """One of so many of the first values, read piece by piece."""
-    parts = [part[-place % every :: every] for place, part in slices(values, 0, count)]
+    parts = [part[-place % every :: every] for place, part in pieces(values, 0, count)]
     return np.concatenate([np.empty(0), *parts])
 
 

@@ -8,8 +8,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from gearidae.archive.pieces import PIECE, count, pieces
 from gearidae.archive.select import is_roller, runs
-from gearidae.archive.slices import SLICE, count, slices
 from gearidae.archive.variables import SAMPLES
 from gearidae.drawing.style import MOST_RUNS, run_labels, runs_of
 from gearidae.errors import SceneError
@@ -96,8 +96,8 @@ def block(samples: int, share: int) -> int:
 
 def reduced(values: xr.DataArray, size: int) -> NDArray[np.float64]:
     """Reduce a variable of any length, read in pieces of whole intervals."""
-    step = max(1, SLICE // size) * size
-    return np.concatenate([_extremes(part, size) for _, part in slices(values, size=step)])
+    step = max(1, PIECE // size) * size
+    return np.concatenate([_extremes(part, size) for _, part in pieces(values, size=step)])
 
 
 def _extremes(values: NDArray[np.float64], size: int) -> NDArray[np.float64]:
@@ -130,7 +130,7 @@ def _times(run: xr.Dataset, kind: EventKind, most: int) -> NDArray[np.float64]:
     total = count(run["event_kind"], kind)
     wanted = np.linspace(0, total - 1, min(total, most)).astype(int)
     parts, passed = [np.empty(0)], 0
-    for place, kinds in slices(run["event_kind"]):
+    for place, kinds in pieces(run["event_kind"]):
         places = place + np.flatnonzero(kinds == kind)
         here = wanted[(wanted >= passed) & (wanted < passed + places.size)] - passed
         if here.size:

@@ -14,8 +14,8 @@ import xarray as xr
 from gearidae.analysis.verdict import outcomes
 from gearidae.analysis.verdict.table import cells, headings
 from gearidae.archive.dataset import dimension_names
+from gearidae.archive.pieces import pieces
 from gearidae.archive.select import is_roller, runs, scene_of, swept_dims
-from gearidae.archive.slices import slices
 from gearidae.archive.summary_rows import summary_rows
 from gearidae.archive.value_text import label_cells, measure_text, number_text, value_text, values_text
 from gearidae.records import EventKind
@@ -154,7 +154,7 @@ class _EventCounts:
 
 def _count_events(run: xr.Dataset) -> _EventCounts:
     counted = _EventCounts(dict.fromkeys(EventKind, 0))
-    for place, kinds in slices(run["event_kind"]):
+    for place, kinds in pieces(run["event_kind"]):
         for kind in EventKind:
             counted.counts[kind] += int(np.count_nonzero(kinds == kind))
         made = kinds == EventKind.ONSET

@@ -15,8 +15,8 @@ import xarray as xr
 from gearidae.analysis.verdict.earlier import OLD, earlier_verdict, is_earlier
 from gearidae.analysis.verdict.judge import gear_verdict, in_touch, is_scheduled, roller_verdict
 from gearidae.analysis.verdict.table import Outcomes, Shown
+from gearidae.archive.pieces import count, pieces
 from gearidae.archive.select import is_roller, refuse_other_labels, run_value, runs, scene_of, swept_dims
-from gearidae.archive.slices import count, slices
 from gearidae.archive.tables import run_labels
 from gearidae.archive.totals import extremes_of, imbalance, imbalance_of, imbalance_words
 from gearidae.archive.train import judged_view
@@ -304,7 +304,7 @@ def _roller(label: dict[str, Any], run: xr.Dataset) -> RollerOutcome:
     if "event_kind" not in run:
         raise SceneError("dataset", "without events", "must have them: a roller is judged by its events")
     impacts = count(run["event_kind"], EventKind.ONSET)
-    kinds = (values for _, values in slices(run["event_kind"]))
+    kinds = (values for _, values in pieces(run["event_kind"]))
     verdict, restitution = roller_verdict(extremes, status, impacts, in_touch(kinds)), math.nan
     if verdict == "rebounds" and extremes is not None:
         approach = float(label.get("speed", label.get("roller_speed", scene_of(run)["roller"]["speed"])))

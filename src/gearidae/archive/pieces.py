@@ -1,4 +1,4 @@
-"""Long variables looked at slice by slice, so that what is asked of them takes no more memory than a slice."""
+"""Long variables looked at piece by piece, so that what is asked of them takes no more memory than a piece."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-SLICE = 2**18
+PIECE = 2**18
 """Values looked at together."""
 
 
@@ -33,7 +33,7 @@ class Spread:
     mean: float
 
 
-def slices(
+def pieces(
     array: xr.DataArray, start: int = 0, stop: int | None = None, *, size: int | None = None
 ) -> Iterator[tuple[int, NDArray[Any]]]:
     """Go through a variable of one dimension.
@@ -45,17 +45,17 @@ def slices(
     start, stop : int, optional
         Which part, from `start` to before `stop`.
     size : int, optional
-        Length of the slices, by default `SLICE`.
+        Length of the pieces, by default `PIECE`.
 
     Yields
     ------
     offset : int
-        Of the slice's first value.
+        Of the piece's first value.
     values : ndarray
         At most `size` values.
     """
     stop = array.size if stop is None else min(stop, array.size)
-    size = size or SLICE
+    size = size or PIECE
     for offset in range(start, stop, size):
         yield offset, array.variable[offset : min(offset + size, stop)].values
 
@@ -63,7 +63,7 @@ def slices(
 def spread(array: xr.DataArray, start: int = 0, stop: int | None = None) -> Spread:
     """Extremes and mean of a part of a variable."""
     number, low, high, total = 0, math.inf, -math.inf, 0.0
-    for _, values in slices(array, start, stop):
+    for _, values in pieces(array, start, stop):
         finite = values[np.isfinite(values)]
         if finite.size:
             number += finite.size
@@ -74,8 +74,8 @@ def spread(array: xr.DataArray, start: int = 0, stop: int | None = None) -> Spre
 
 def reached(array: xr.DataArray) -> int:
     """Samples of a run up to its last one; the first ones may be missing, as in a running mean."""
-    for offset in reversed(range(0, array.size, SLICE)):
-        present = np.isfinite(array.variable[offset : offset + SLICE].values)
+    for offset in reversed(range(0, array.size, PIECE)):
+        present = np.isfinite(array.variable[offset : offset + PIECE].values)
         if present.any():
             return offset + len(present) - int(present[::-1].argmax())
     return 0
@@ -83,4 +83,4 @@ def reached(array: xr.DataArray) -> int:
 
 def count(array: xr.DataArray, value: float) -> int:
     """How often a value occurs."""
-    return sum(int(np.count_nonzero(values == value)) for _, values in slices(array))
+    return sum(int(np.count_nonzero(values == value)) for _, values in pieces(array))
