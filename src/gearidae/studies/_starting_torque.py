@@ -257,7 +257,7 @@ def _torques_of_train(
             "parts": np.array(parts),
         }
         attributes = {
-            **provenance(scene, "searched the starting torque of a train", swept=(_FRACTION,)),
+            **provenance(scene, "searched the starting torque of a train", swept=(COVERAGE_KEY,)),
             "title": f"{scene.name}: starting torque",
             "summary": "Smallest torque of the drive that takes a train through its mesh exits without inertia.",
             "drive_torque": scene.drive.torque,

@@ -29,10 +29,10 @@ from gearidae.archive.variables import (
     EVENTS,
     EXTREMES,
     OF_SWEPT_RUN,
-    SAM_FRACTION,
     SAMPLES,
     STANDSTILL_LIST,
     TIME,
+    run_label,
 )
 from gearidae.scene.judged import judged_mesh, judged_shaft
 
@@ -92,7 +92,7 @@ def train_dataset(
         variables,
         coords={
             "time": ("time", solution.time, TIME.attributes),
-            "sam_fraction": ((), scene.coating.sam_fraction, SAM_FRACTION.attributes),
+            **run_label(scene),
             **_coordinates(scene),
         },
         attrs={
