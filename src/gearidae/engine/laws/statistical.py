@@ -262,7 +262,8 @@ def _free(
 # -- what it is asked ------------------------------------------------------------------------------------------------
 
 
-@compiled
+# put into the sums, like all that is asked in every step: called, it took 10 ns a pair where laws stand behind it
+@compiled(inline=True)
 def _joining(m: Model, k: int, y: Floats, gap: float, value: tuple[Shares, Shares]) -> tuple[Shares, Shares]:
     joined = m.state.history[k].joined
     if gap >= max(joined[0], joined[1], joined[2]):
@@ -295,7 +296,7 @@ def _energy(m: Model, y: Floats, pair: PairState, value: tuple[float, float]) ->
     return value[0] + stored, value[1] + lost
 
 
-@compiled
+@compiled(inline=True)
 def _power(
     m: Model, t: float, y: Floats, k: int, gap: float, w_rate: float, value: tuple[float, float]
 ) -> tuple[float, float]:
