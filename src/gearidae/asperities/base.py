@@ -13,7 +13,10 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from typing import ClassVar
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any, ClassVar, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,6 +26,72 @@ from gearidae.asperities.tip import Asperity
 from gearidae.references import Reference
 
 _X, _W = np.polynomial.legendre.leggauss(48)
+
+
+@dataclass(frozen=True, kw_only=True)
+class CoatedKey:
+    """The same key in the table ``coating``, of flanks that the monolayer covers.
+
+    Attributes
+    ----------
+    default : float
+    description : str
+    mixed : (coated, bare) -> float
+        Its number where a covered flank meets a bare one.
+    """
+
+    default: float
+    description: str
+    mixed: Callable[[float, float], float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SurfaceKey:
+    """A key of an asperity law in the table ``surface`` of a scene.
+
+    Attributes
+    ----------
+    name : str
+    unit : str
+        SI unit in pint's spelling.
+    description : str
+    default : float, optional
+        None for one that has to be given.
+    at_least, at_most : float
+        Bounds, in that unit.
+    coated : CoatedKey, optional
+        Of a key that covered flanks have a number of their own for.
+    """
+
+    name: str
+    unit: str
+    description: str
+    default: float | None
+    at_least: float
+    at_most: float
+    coated: CoatedKey | None = None
+
+
+class Validity(NamedTuple):
+    """A number that must not exceed 1 where a law holds.
+
+    Attributes
+    ----------
+    name, quantity : str
+        Of the row of the validity, without the material, and what the number is.
+    number : float
+    holds, fails : str
+        Verdicts.
+    """
+
+    name: str
+    quantity: str
+    number: float
+    holds: str
+    fails: str
+
+
+_GOES_WITH_ALL: Final = MappingProxyType[str, str]({})
 
 
 class AsperityLaw(ABC):
@@ -37,6 +106,15 @@ class AsperityLaw(ABC):
 
     needs: ClassVar[tuple[str, ...]] = ()
     """Keys of the table ``surface`` that this law needs, and without which they have no effect."""
+
+    keys: ClassVar[tuple[SurfaceKey, ...]] = ()
+    """Keys of a law in this folder; what they are is read from `tip.surface` in `of`."""
+
+    is_feature: ClassVar[bool] = False
+    """Whether `gearidae.combinations` lists scenes with it, as ``NAME asperities``."""
+
+    not_with: ClassVar[Mapping[str, str]] = _GOES_WITH_ALL
+    """Other features that no scene with this law can have, each with its reason."""
 
     references: ClassVar[tuple[Reference, ...]] = ()
     """Publications of the law, which `gearidae.cite` names."""
@@ -58,6 +136,18 @@ class AsperityLaw(ABC):
         AsperityLaw
             Of this kind, or of a simpler one that this kind turns into (without adhesion, say).
         """
+
+    @classmethod
+    def validity(cls, surface: Any, gap: float) -> Validity | None:
+        """Say how far a law holds on a surface, where flanks rest at a gap of mean planes [m]; None if it always does.
+
+        Parameters
+        ----------
+        surface : Surface
+            Of one material of a scene.
+        gap : float
+        """
+        return None
 
     @property
     @abstractmethod

@@ -158,6 +158,7 @@ class Maugis(AsperityLaw):
     """
 
     name: ClassVar[str] = "maugis"
+    is_feature: ClassVar[bool] = True
     references: ClassVar[tuple[Reference, ...]] = (
         Reference(
             "maugis1992",

@@ -27,14 +27,16 @@ F. M. Orr, L. E. Scriven, A. P. Rivas, J. Fluid Mech. 67 (1975) 723-742, doi:10.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any, ClassVar, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from gearidae.arrays import Floats
-from gearidae.asperities.base import AsperityLaw
+from gearidae.asperities.base import AsperityLaw, CoatedKey, SurfaceKey, Validity
 from gearidae.asperities.dmt import Dmt
 from gearidae.asperities.registry import register
 from gearidae.asperities.tip import Asperity
@@ -75,6 +77,11 @@ def meniscus_reach(surface: Any) -> float:
     return 2.0 * kelvin_radius(surface.humidity, surface.temperature) * cosine if wets else 0.0
 
 
+def _angle_between(coated: float, bare: float) -> float:
+    """Contact angle that draws a meniscus between unlike surfaces: by the mean of their cosines."""
+    return math.acos(0.5 * (math.cos(coated) + math.cos(bare)))
+
+
 @register
 @dataclass(frozen=True)
 class Meniscus(AsperityLaw):
@@ -111,6 +118,59 @@ class Meniscus(AsperityLaw):
         ),
     )
     needs: ClassVar[tuple[str, ...]] = ("humidity",)
+    keys: ClassVar[tuple[SurfaceKey, ...]] = (
+        SurfaceKey(
+            name="humidity",
+            unit="1",
+            description="relative humidity of the air, h; for meniscus asperities",
+            default=None,
+            at_least=0.01,
+            at_most=0.99,
+        ),
+        SurfaceKey(
+            name="contact_angle",
+            unit="rad",
+            description="contact angle of water on the bare flank, which is dry from 90 deg on; "
+            "for meniscus asperities",
+            default=0.0,
+            at_least=0,
+            at_most=math.pi,
+            coated=CoatedKey(
+                default=math.radians(110.0),
+                description="contact angle of water on the monolayer; for meniscus asperities",
+                mixed=_angle_between,
+            ),
+        ),
+        SurfaceKey(
+            name="bridged",
+            unit="1",
+            description="distance at which a meniscus forms over that at which it breaks; for meniscus asperities",
+            default=1.0,
+            at_least=0,
+            at_most=1,
+        ),
+        SurfaceKey(
+            name="temperature",
+            unit="K",
+            description="temperature of the air; for meniscus asperities",
+            default=298.15,
+            at_least=200,
+            at_most=650,
+        ),
+    )
+    is_feature: ClassVar[bool] = True
+    not_with: ClassVar[Mapping[str, str]] = MappingProxyType(
+        {
+            "elastic bodies": (
+                "menisci pull across the gap and would deflect the bodies outside the contacts, where no deflection is"
+                " solved for"
+            ),
+            "attraction": (
+                "the water would attract twice: what a Hamaker constant pulls across the gap is part of the pull of a"
+                " meniscus"
+            ),
+        }
+    )
     pull: float
     reach: float
     bridged: float
@@ -123,6 +183,23 @@ class Meniscus(AsperityLaw):
             return Dmt.of(tip, unit)
         force = 4.0 * math.pi * tip.radius * TENSION * math.cos(tip.surface.contact_angle)
         return cls(force / (tip.hertz_factor * unit**1.5), reach / unit, tip.surface.bridged)
+
+    @classmethod
+    def validity(cls, surface: Any, gap: float) -> Validity | None:
+        """Count menisci within the wetted circle of one: where they merge, no law of one asperity holds."""
+        reach = meniscus_reach(surface)
+        if reach == 0.0:
+            return None
+        # the neck of a meniscus around a tip that touches meets the plane where the sphere is its reach away
+        area = 2.0 * math.pi * surface.asperity_radius * reach
+        share = 0.5 * math.erfc((gap - reach) / (math.sqrt(2.0) * surface.roughness))
+        return Validity(
+            "menisci",
+            "menisci within the circle of one",
+            surface.asperity_density * area * share,
+            "menisci stay apart",
+            "menisci merge: the pull is that of a film, not of single asperities",
+        )
 
     @property
     def join(self) -> float:

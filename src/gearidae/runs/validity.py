@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearidae.asperities import law_of
-from gearidae.asperities.meniscus import meniscus_reach
+from gearidae.asperities import law_class, law_of
 from gearidae.asperities.tip import tabor_parameter
 from gearidae.contact.asperity_statistics import (
     asperities_for_mean,
@@ -146,7 +145,7 @@ def _rows(scene: GearScene) -> tuple[ValidityRow, ...]:
         _asperities(rest, real),
         _density(rest.contact),
         *_merging(scene),
-        *_menisci(scene, rest),
+        *_law_of_asperities(scene, rest),
         *_tabor(scene),
     ]
     rows += [_temperature(rest, stiffness), _gas(rest, stiffness), _adhesion(scene, rest)]
@@ -273,32 +272,22 @@ def _merging(scene: Scene) -> Iterator[ValidityRow]:
         yield _row(f"merging_{name}", quantity, radius, "m", limit, half, holds, verdict)
 
 
-def _menisci(scene: Scene, rest: Rest) -> Iterator[ValidityRow]:
-    """Menisci within the wetted circle of another: where they merge, no law of one asperity holds."""
+def _law_of_asperities(scene: Scene, rest: Rest) -> Iterator[ValidityRow]:
+    """What the law of one asperity says of itself."""
+    law = law_class(scene.contact.asperity)
     for surface, _, _, name in scene.materials():
-        reach = meniscus_reach(surface)
-        if reach == 0.0:
-            continue
-        # the neck of a meniscus around a tip that touches meets the plane where the sphere is its reach away
-        area = 2.0 * math.pi * surface.asperity_radius * reach
-        share = 0.5 * math.erfc((rest.gap - reach) / (math.sqrt(2.0) * surface.roughness))
-        number = surface.asperity_density * area * share
-        holds = number <= 1.0
-        verdict = (
-            "menisci stay apart"
-            if holds
-            else "menisci merge: the pull is that of a film, not of single asperities"
-        )
-        yield _row(
-            f"menisci_{name}",
-            f"{name}: menisci within the circle of one",
-            number,
-            "1",
-            "1",
-            1.0,
-            holds,
-            verdict,
-        )
+        if (said := law.validity(surface, rest.gap)) is not None:
+            holds = said.number <= 1.0
+            yield _row(
+                f"{said.name}_{name}",
+                f"{name}: {said.quantity}",
+                said.number,
+                "1",
+                "1",
+                1.0,
+                holds,
+                said.holds if holds else said.fails,
+            )
 
 
 def _tabor(scene: Scene) -> Iterator[ValidityRow]:

@@ -22,18 +22,26 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import Annotated, Final, Literal, NamedTuple, Self
+from typing import TYPE_CHECKING, Annotated, Final, Literal, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
-from pydantic import Field, model_validator
+from pydantic import Field, create_model, model_validator
 
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.scene.coating_table import FractionTable, path_means
 from gearidae.scene.group import Group, shorten
 from gearidae.scene.quantity import Quantity
-from gearidae.scene.surface import ContactAngle, Energy, Hamaker, OptionalFriction, OptionalStrength, Surface
+from gearidae.scene.surface import (
+    LAW_KEYS,
+    Energy,
+    Hamaker,
+    OptionalFriction,
+    OptionalStrength,
+    Surface,
+    field_of_law,
+)
 
 MATERIAL_NAMES: Final = ("bare", "coated", "mixed")
 """Names of the materials that an interface may have, in the order of `Scene.materials`."""
@@ -68,18 +76,34 @@ class Material(NamedTuple):
     name: str
 
 
-class Coating(Group):
-    """The self-assembled monolayer: its energy and thickness, and how much of it is left on either side."""
+class CoatingOfFlanks(Group):
+    """Share and energies of the self-assembled monolayer."""
 
     sam_fraction: Fraction = Field(description="share of the flank that the monolayer still covers, f")
     energy: Energy = Field(default=0.1, description="surface energy where the monolayer covers the flank")
     hamaker: Hamaker = Field(
         default=0.0, description="Hamaker constant where the monolayer covers both flanks, at their own gap"
     )
-    contact_angle: Annotated[float, ContactAngle] = Field(
-        default=math.radians(110.0),
-        description="contact angle of water on the monolayer; for meniscus asperities",
+
+
+if TYPE_CHECKING:
+    _CoatingWithLaws = CoatingOfFlanks
+else:
+    _CoatingWithLaws = create_model(
+        "_CoatingWithLaws",
+        __base__=CoatingOfFlanks,
+        __module__=__name__,
+        **{
+            key.name: field_of_law(key, key.coated.default, key.coated.description)
+            for key in LAW_KEYS
+            if key.coated is not None
+        },
     )
+
+
+class Coating(_CoatingWithLaws):
+    """The self-assembled monolayer: its energy and thickness, and how much of it is left on either side."""
+
     pairing: Literal["patches", "independent"] = Field(
         default="patches",
         description="patches: covered patches meet covered ones; independent: each side is covered on its own",
@@ -197,20 +221,17 @@ def materials_of(coating: Coating, surface: Surface) -> tuple[Material, ...]:
         tooth and place are means over all teeth that meet and along the path of contact.
     """
     constants = {
-        "coated": {
-            "energy": coating.energy,
-            "hamaker": coating.hamaker,
-            "contact_angle": coating.contact_angle,
-        },
+        "coated": {"energy": coating.energy, "hamaker": coating.hamaker},
         "mixed": {
-            # a meniscus between unlike surfaces is drawn by the mean of their cosines
-            "contact_angle": math.acos(
-                0.5 * (math.cos(coating.contact_angle) + math.cos(surface.contact_angle))
-            ),
             "energy": math.sqrt(coating.energy * surface.energy),
             "hamaker": math.sqrt(coating.hamaker * surface.hamaker),
         },
     }
+    for key in LAW_KEYS:
+        if key.coated is not None:
+            coated, bare = getattr(coating, key.name), getattr(surface, key.name)
+            constants["coated"][key.name] = coated
+            constants["mixed"][key.name] = key.coated.mixed(coated, bare)
     return tuple(
         Material(
             surface if name == "bare" else surface.model_copy(update=constants[name]),

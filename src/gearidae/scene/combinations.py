@@ -11,6 +11,7 @@ from functools import partial
 from itertools import combinations as pairs_of
 from typing import TYPE_CHECKING, Final, NamedTuple
 
+from gearidae.asperities import law_class, law_names
 from gearidae.errors import SceneError
 from gearidae.laws.law import DRIVE, LOAD, ShaftLaw, on_shaft
 from gearidae.laws.pairs import MESH_LAWS, has_mesh_law
@@ -55,6 +56,11 @@ def _flanks_rub(scene: Scene, law: str) -> bool:
     return scene.contact.friction_law == law and has_flank_friction(scene)
 
 
+def _has_asperities(scene: Scene, name: str) -> bool:
+    return scene.contact.asperity == name
+
+
+_ASPERITIES: Final = tuple(name for name in law_names() if law_class(name).is_feature)
 ELASTIC: Final = "elastic bodies"
 FEATURES: Final = {
     ELASTIC: Feature("contact.bodies", lambda scene: scene.contact.bodies == "elastic"),
@@ -74,8 +80,10 @@ FEATURES: Final = {
         lambda scene: any(joint.coefficient > 0.0 and joint.name == "pin" for joint in joints(scene)),
     ),
     "dry resistance": Feature("load.torque", lambda scene: scene.load is not None and scene.load.is_dry),
-    "maugis asperities": Feature("contact.asperity", lambda scene: scene.contact.asperity == "maugis"),
-    "meniscus asperities": Feature("contact.asperity", lambda scene: scene.contact.asperity == "meniscus"),
+    **{
+        f"{name} asperities": Feature("contact.asperity", partial(_has_asperities, name=name))
+        for name in _ASPERITIES
+    },
     "independent coatings": Feature("coating.pairing", lambda scene: scene.coating.pairing == "independent"),
     "coating by place": Feature("coating.pinion_table", lambda scene: scene.coating.by_place),
     "radius force": Feature(
@@ -109,13 +117,11 @@ REFUSED: Final = {
         "attraction acts across the whole gap and would deflect the bodies outside the contacts, where no deflection is"
         " solved for"
     ),
-    (ELASTIC, "meniscus asperities"): (
-        "menisci pull across the gap and would deflect the bodies outside the contacts, where no deflection is"
-        " solved for"
-    ),
-    ("attraction", "meniscus asperities"): (
-        "the water would attract twice: what a Hamaker constant pulls across the gap is part of the pull of a meniscus"
-    ),
+    **{
+        (other, f"{name} asperities"): reason
+        for name in _ASPERITIES
+        for other, reason in law_class(name).not_with.items()
+    },
     (ELASTIC, "shear friction"): (
         "the traction of a shear strength on asperities that hardly press would deflect the bodies along the flank, and"
         " deflections are solved for along the normal only"
@@ -123,7 +129,10 @@ REFUSED: Final = {
 }
 """Pairs of features that no scene can have, each with its reason."""
 
-_ONE_KEY: Final = {("coulomb friction", "shear friction"), ("maugis asperities", "meniscus asperities")}
+_ONE_KEY: Final = {
+    ("coulomb friction", "shear friction"),
+    *pairs_of([f"{name} asperities" for name in _ASPERITIES], 2),
+}
 """Features that are two values of one key."""
 
 

@@ -34,7 +34,7 @@ from gearidae.scene.run import Initial, Roller, Run
 from gearidae.scene.schema import json_schema
 from gearidae.scene.shafts import Meshing, Shaft
 from gearidae.scene.strip import check_population
-from gearidae.scene.surface import Contact, Surface
+from gearidae.scene.surface import LAW_KEYS, Contact, Surface
 from gearidae.scene.surface_library import library_changes, with_library
 from gearidae.scene.torque import Drive, Load
 from gearidae.scene.train import Train, pair_meshes, pair_shafts, train_of
@@ -214,7 +214,7 @@ class Scene(Group):
     @property
     def coated_surface(self) -> Surface:
         """The surface where the monolayer covers it: with the coating's energy, Hamaker constant and contact angle."""
-        own = ("energy", "hamaker", "contact_angle")
+        own = ("energy", "hamaker", *(key.name for key in LAW_KEYS if key.coated is not None))
         return self.surface.model_copy(update={key: getattr(self.coating, key) for key in own})
 
     @property

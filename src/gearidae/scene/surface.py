@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
-from typing import Annotated, Any, Final, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field, create_model, model_validator
 
-from gearidae.asperities import law_names
+from gearidae.asperities import law_class, law_names
+from gearidae.asperities.base import SurfaceKey
 from gearidae.asperities.tip import INTERACTION_RANGE
 from gearidae.scene.asperity_list import Listed, ListedAsperities
 from gearidae.scene.group import Group
@@ -18,7 +18,6 @@ from gearidae.scene.quantity import Count, Quantity
 _LONGEST_LINE = 300
 Energy = Annotated[float, Quantity(unit="J/m^2", at_least=0, at_most=100, least=1e-15)]
 Hamaker = Annotated[float, Quantity(unit="J", at_least=0, at_most=1e-17, least=1e-25)]
-ContactAngle: Final = Quantity(unit="rad", at_least=0, at_most=math.pi)
 _FRICTION = Quantity(unit="1", at_least=0, at_most=2, least=1e-6)
 _STRENGTH = Quantity(unit="Pa", at_least=0, at_most=1e12, least=1.0, shown=("MPa", 6))
 Friction = Annotated[float, _FRICTION]
@@ -38,7 +37,18 @@ def _line(value: object) -> str:
     raise ValueError(f"must be a printable line of at most {_LONGEST_LINE} characters")
 
 
-class Surface(Group):
+LAW_KEYS: Final = tuple(key for name in law_names() for key in law_class(name).keys)
+"""Keys that the laws of one asperity declare."""
+
+
+def field_of_law(key: SurfaceKey, default: float | None, description: str) -> tuple[Any, Any]:
+    """Field of a table for a key of a law of one asperity."""
+    kind = Quantity(unit=key.unit, at_least=key.at_least, at_most=key.at_most)
+    number: Any = float if default is not None else float | None
+    return Annotated[number, kind], Field(default=default, description=description)
+
+
+class SurfaceOfSolid(Group):
     """Both flanks: the same elastic solid with the same Gaussian roughness."""
 
     youngs_modulus: Annotated[float, Quantity(unit="Pa", at_least=1e3, at_most=1e14, shown=("GPa", 9))] = (
@@ -65,20 +75,22 @@ class Surface(Group):
         default=0.0,
         description="Hamaker constant of bare flanks, which then attract each other across the gap; bodies stay rigid",
     )
-    humidity: Annotated[float | None, Quantity(unit="1", at_least=0.01, at_most=0.99)] = Field(
-        default=None, description="relative humidity of the air, h; for meniscus asperities"
+
+
+if TYPE_CHECKING:
+    _SurfaceWithLaws = SurfaceOfSolid
+else:
+    _SurfaceWithLaws = create_model(
+        "_SurfaceWithLaws",
+        __base__=SurfaceOfSolid,
+        __module__=__name__,
+        **{key.name: field_of_law(key, key.default, key.description) for key in LAW_KEYS},
     )
-    contact_angle: Annotated[float, ContactAngle] = Field(
-        default=0.0,
-        description="contact angle of water on the bare flank, which is dry from 90 deg on; for meniscus asperities",
-    )
-    bridged: Annotated[float, Quantity(unit="1", at_least=0, at_most=1)] = Field(
-        default=1.0,
-        description="distance at which a meniscus forms over that at which it breaks; for meniscus asperities",
-    )
-    temperature: Annotated[float, Quantity(unit="K", at_least=200, at_most=650)] = Field(
-        default=298.15, description="temperature of the air; for meniscus asperities"
-    )
+
+
+class Surface(_SurfaceWithLaws):
+    """Both flanks: the same elastic solid with the same Gaussian roughness, and what laws of asperities ask for."""
+
     provenance: Annotated[str, BeforeValidator(_line)] = Field(
         default="",
         description="where roughness, density and radius of the asperities come from; not computed with",
