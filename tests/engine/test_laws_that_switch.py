@@ -129,6 +129,34 @@ def test_sectors_of_the_angle_keep_their_work(flight, name, way):
     np.testing.assert_allclose(0.5 * I1 * (speed**2 - speed[0] ** 2), work, rtol=0, atol=2e-4 * work[-1])
 
 
+def few_sectors(t, angle, speed, p):
+    return p[0] if math.cos(p[1] * angle) > 0.64 else 0.0
+
+
+def few_sector_ends(t, angle, speed, p):
+    return math.cos(p[1] * angle) - 0.64
+
+
+@pytest.mark.parametrize("method", ["auto", "bdf"])
+@pytest.mark.parametrize("rtol", [1e-5, 1e-7])
+def test_no_step_passes_over_sectors_as_a_whole(flight, method, rtol):
+    """Steps of a flight grow from nothing until one begins and ends within the same sides, with whole turns between."""
+    torque, order = 9.43e-18, 577.0
+    gd.register_torque("few_sectors", parameters=2, switch=few_sector_ends)(few_sectors)
+    try:
+        changes = {"drive.law": law("few_sectors", torque, order), "run.method": method, "run.duration": 4e-3}
+        run = solve(flight.replace(changes | {"run.rtol": rtol, "initial.gear_speed": 1.5}))
+    finally:
+        gd.unregister_torque("few_sectors")
+    turned = order * (run.samples["pinion_angle"][-1] - run.samples["pinion_angle"][0])
+    half = math.acos(0.64)
+    whole, rest = divmod(turned, 2.0 * math.pi)
+    within = whole * 2.0 * half + min(rest, half) + max(0.0, rest - (2.0 * math.pi - half))
+    speed = run.samples["pinion_speed"]
+    energy = 0.5 * I1 * (speed[-1] ** 2 - speed[0] ** 2)
+    assert energy == pytest.approx(torque * within / order, rel=1e-4, abs=0)
+
+
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("name", ["bang", "bang_with_switch"])
 def test_a_law_that_chatters_is_named(flight, name, way):

@@ -195,3 +195,28 @@ def test_a_chain_has_the_words_and_standstills_of_the_whole_run(seed, cuts):
     assert int(run.standstills) == int(whole.standstills)
     for name in PARTS:
         assert float(run[name]) == pytest.approx(float(whole[name]), rel=1e-3, nan_ok=True), name
+
+
+LONG_CHAINS = {
+    "ramp": {"drive.schedule": [(0.0, 0.0), (1.1, 1.1e-17)], "coating.sam_fraction": 1.0},
+    "wave": {
+        "drive.torque": 9e-18,
+        "drive.schedule": [],
+        "drive.harmonic": [{"amplitude": 4e-18, "frequency": 3.0, "phase": 0.0}],
+        "coating.sam_fraction": 0.8,
+    },
+    "steady": {"drive.torque": 1.1e-17, "drive.schedule": [], "coating.sam_fraction": 0.6},
+}
+
+
+@pytest.mark.parametrize("cuts", [(0.1, 1.0), (0.25, 0.5, 0.75, 1.0)])
+@pytest.mark.parametrize("drive", LONG_CHAINS)
+def test_a_chain_of_eighty_exits_has_the_words_of_the_whole_run(drive, cuts):
+    """Four seconds: a gear that turns irregularly as a whole turns irregularly in pieces, too."""
+    scene = PAIR.replace({"run.duration": 4.0, "run.samples": "off", **LONG_CHAINS[drive]})
+    whole, run, before = gd.simulate(scene), None, 0.0
+    for cut in cuts:
+        run, before = gd.simulate(scene.replace({"run.duration": (cut - before) * 4.0}), start=run), cut
+    assert int(run.mesh_exits) == int(whole.mesh_exits) > 40
+    assert outcomes(run)[0].words.replace(" of the chain", "") == outcomes(whole)[0].words
+    assert int(run.standstills) == int(whole.standstills)

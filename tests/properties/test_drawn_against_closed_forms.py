@@ -188,13 +188,13 @@ def _sectors(rng, seed):
 
 
 def break_away(seed):
-    """Hubs hold gears under a dry load and a torque that rises."""
+    """Hubs hold gears under a dry load and a torque that rises, until they have turned by more than half a pitch."""
     rng = np.random.default_rng([4, seed])
     coefficient = float(rng.uniform(0.1, 0.4))
     radii = (float(rng.uniform(2e-6, 8e-6)), float(rng.uniform(5e-6, 20e-6)))
     dry = float(10 ** rng.uniform(-16.5, -15.3))
     wanted = friction.hub_starting_torque(PAIR.geometry, dry, coefficient, radii)
-    ramp, top = float(rng.uniform(0.15, 0.3)), wanted * float(rng.uniform(1.5, 3.0))
+    ramp, top = float(rng.uniform(0.3, 0.6)), wanted * float(rng.uniform(1.5, 3.0))
     scene = PAIR.replace(
         {
             "gears.hub_friction": coefficient,

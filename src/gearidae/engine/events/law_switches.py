@@ -25,6 +25,12 @@ JUMPS_HIGH: Final = 300
 """Jumps of laws in close succession, beyond which they chatter."""
 APART: Final = 12
 """Steps without a jump after which the next is no succession; a start takes as many to reach its step length."""
+_PLACES: Final = (0.0, *sorted(k * 0.5 * (math.sqrt(5.0) - 1.0) % 1.0 for k in range(1, 13)), 1.0)
+"""Shares of a step at which the function of a law's switch is looked at, no two of which are a period of a wave apart
+that all have in common: multiples of the golden section."""
+_SECTIONS: Final = 8
+"""Of the golden section, by which a dip between three of them narrows to a fiftieth."""
+_GOLDEN: Final = 0.5 * (3.0 - math.sqrt(5.0))
 
 
 @compiled
@@ -123,15 +129,70 @@ def laws_chatter(m: Model) -> bool:
 
 
 @compiled
+def _distance(
+    m: Model,
+    shaft: int,
+    t: float,
+    h: float,
+    share: float,
+    first: tuple[float, float],
+    last: tuple[float, float],
+) -> float:
+    """How far the function of a law's switch is from zero on its side, at a share of a step."""
+    angle, speed = first[0] + share * (last[0] - first[0]), first[1] + share * (last[1] - first[1])
+    return float(m.work.law_side[shaft] * switch_value(m, shaft, t + share * h, angle, speed))
+
+
+@compiled
 def _returns(
     m: Model, shaft: int, t: float, h: float, first: tuple[float, float], last: tuple[float, float]
 ) -> bool:
-    """Whether the function of a law's switch has another sign within a step than at both ends."""
-    for i in range(1, 4):
-        share = 0.25 * i
-        angle, speed = first[0] + share * (last[0] - first[0]), first[1] + share * (last[1] - first[1])
-        if not on_its_side(m, shaft, t + share * h, angle, speed):
+    """Whether the function of a law's switch has another sign within a step than at both ends.
+
+    Three places of which the middle one is nearest to zero are followed down by the golden section.
+    """
+    if m.work.law_side[shaft] == 0.0:
+        return False
+    before = _distance(m, shaft, t, h, _PLACES[0], first, last)
+    here = _distance(m, shaft, t, h, _PLACES[1], first, last)
+    for i in range(1, len(_PLACES) - 1):
+        if here < 0.0:
             return True
+        there = _distance(m, shaft, t, h, _PLACES[i + 1], first, last)
+        places = _PLACES[i - 1], _PLACES[i], _PLACES[i + 1]
+        if here < before and here <= there and _dips(m, shaft, t, h, places, first, last):
+            return True
+        before, here = here, there
+    return False
+
+
+@compiled
+def _dips(
+    m: Model,
+    shaft: int,
+    t: float,
+    h: float,
+    places: tuple[float, float, float],
+    first: tuple[float, float],
+    last: tuple[float, float],
+) -> bool:
+    """Whether the function is beyond zero near one of three places of a step, the middle one, where it is nearest."""
+    low, middle, high = places
+    least = _distance(m, shaft, t, h, middle, first, last)
+    for _ in range(_SECTIONS):
+        further = high - middle > middle - low
+        end = high if further else low
+        place = middle + _GOLDEN * (end - middle)
+        value = _distance(m, shaft, t, h, place, first, last)
+        if value < 0.0:
+            return True
+        if value < least:
+            low, high = (middle, high) if further else (low, middle)
+            middle, least = place, value
+        elif further:
+            high = place
+        else:
+            low = place
     return False
 
 
