@@ -50,7 +50,6 @@ from gearidae.engine.motion.static_solve import settle_nodes
 from gearidae.engine.observers.balance import open_balance
 from gearidae.engine.observers.exposures.bins import ROWS, exposure_table, exposures_of
 from gearidae.engine.observers.extremes.windows import begin_parts_before
-from gearidae.engine.observers.standing.follow import settle_standing_at
 from gearidae.engine.population.restore import take_joined
 from gearidae.engine.setup.build import make_problem
 from gearidae.engine.setup.build_torques import KNOT_SPACING
@@ -111,7 +110,7 @@ def checkpoint_of_start(scene: Scene, start: Start) -> Floats:
     assert start.words is not None
     old, old_y = _restored(start.scene, start.words, start.began)
     if old.model.scene.follow.gear != 0 and _torques_differ(start.scene, scene):
-        settle_standing_at(old.addresses.place, float(old.model.state.time), old_y)
+        old.judge.settle(float(old.model.state.time), old_y)
     new = problem_from(scene, start)
     new.prepare(scene.run.rtol, scene.run.sample_count)
     new = _same_contact(old, new)

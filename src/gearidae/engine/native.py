@@ -32,6 +32,7 @@ from gearidae.engine.integrate.roots import SHARPNESS, Arrays, Stepper, state_fo
 from gearidae.engine.model.addresses import model_at
 from gearidae.engine.model.state import MOTION, Floats, Model
 from gearidae.engine.motion.static_solve import fold_gap
+from gearidae.engine.observers.standing.judge import STICKS
 from gearidae.engine.setup.problem import Problem
 from gearidae.engine.step import advance
 from gearidae.engine.sundials import names as sun
@@ -40,6 +41,8 @@ from gearidae.records import Statistics
 
 FIRST_STEPS = 1_000
 """Steps of the first block, before it is known what a step costs; of elastic bodies and discrete asperities, one."""
+STOP_STEPS = 1_000
+"""Of a block at most of a run that is to stop where it sticks, which is asked at its end."""
 GROWTH_HIGH = 50
 """By how much a block may have more steps than the one before."""
 
@@ -149,6 +152,9 @@ def _blocks(
         room = out if reader is None else out.before(m, reader.sample)
         advance(problem.addresses.place, s, room, budget)
         budget = _next_budget(budget, time.monotonic() - started)
+        if m.scene.stop == STICKS:
+            budget = min(budget, STOP_STEPS)
+        problem.judge.follow(float(s.clock[0]))
         update_statistics(statistics, m.state.progress)
         statistics.ending = ending_of_flag(int(driver.error), elastic or m.scene.population.flanks > 0)
         if driver.error < 0 and elastic:

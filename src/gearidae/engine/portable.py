@@ -46,6 +46,7 @@ from gearidae.engine.integrate.resting import longest_step
 from gearidae.engine.integrate.start import first_step
 from gearidae.engine.model.addresses import Addresses
 from gearidae.engine.model.state import Floats, Model, Record
+from gearidae.engine.model.work_record import MOST_LEAVINGS
 from gearidae.engine.motion.block_jacobian import dense_jacobian, store_size
 from gearidae.engine.motion.static_solve import fold_gap
 from gearidae.engine.setup.problem import Problem
@@ -53,6 +54,8 @@ from gearidae.engine.step import has_room, prepare_restart, prepare_start
 from gearidae.errors import SceneError
 from gearidae.records import Statistics
 
+STOP_STEPS = 1_000
+"""After so many steps a run that is to stop where it sticks is asked."""
 STATES_HIGH = 600
 """States at most: the Jacobian is a full matrix here."""
 _POINTS = 6  # number of former returns used by an interpolation
@@ -96,6 +99,8 @@ def run(
             break
         y, yp = reached
         yield from _samples(problem, solver, out, y, reader)
+        if driver.since % STOP_STEPS == 0 or m.work.leavings == MOST_LEAVINGS:
+            problem.judge.follow(float(driver.time))
         if not has_room(driver.events, driver.passages, driver.impacts, out):
             yield out.block(m, driver.time)
         afresh = finish_step_at(solver.addresses.place, float(driver.time), y, yp, between, flag, out)

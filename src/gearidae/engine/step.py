@@ -90,6 +90,7 @@ from gearidae.engine.integrate.step_control import (
 from gearidae.engine.model.addresses import model_at
 from gearidae.engine.model.record_types import FREE
 from gearidae.engine.model.state import PHASE, Floats, Model, W
+from gearidae.engine.model.work_record import MOST_LEAVINGS
 from gearidae.engine.motion.observe import observe
 from gearidae.engine.motion.pair_forces import finish_deflections, is_eliminated, set_deflections
 from gearidae.engine.motion.residual import residual
@@ -149,6 +150,7 @@ def advance(place: int, arrays: Arrays, out: Output, budget: int) -> None:
         and budget > 0
         # asked before the step: what happens at its end is recorded where it is dealt with, which cannot be repeated
         and has_room(driver.events, driver.passages, driver.impacts, out)
+        and m.work.leavings < MOST_LEAVINGS
     ):
         if driver.pending == 0:
             if (

@@ -141,8 +141,7 @@ _PASSAGE_FIELDS = (
 MOST_ZEROS: Final = 12
 """Zeros of the gear's speed that are kept as beginnings of a standstill."""
 HIGH: Final = MOST_ZEROS
-SPARE: Final = MOST_ZEROS + 1
-"""Places among the zeros: of the zero farthest forward, and of a copy to look ahead with."""
+"""Place among the zeros: of the zero farthest forward."""
 MOST_SLOW: Final = 32
 MOST_STANDSTILLS: Final = 64
 
@@ -155,17 +154,18 @@ _ZERO_FIELDS: Final = (
     Quantity("lowest", "position of the gear since then, at zeros of its speed", PITCHES),
     Quantity("highest", "position of the gear since then, at zeros of its speed", PITCHES),
     flag("start", "1 for a start at rest"),
-    flag("spent", "1 if a standstill that has ended lies behind it"),
+    flag("driven", "1 if the drive has exceeded the dry load of a gear at rest there since then"),
     Quantity("rest_time", "time at rest until then", SECONDS),
-    Quantity("free_time", "up to which free gears are followed", SECONDS),
-    Quantity("free_travel", "of free gears", PITCHES),
-    Quantity("free_speed", "of free gears", Unit("pb/s")),
-    Quantity("free_farthest", "largest size of `free_travel`", PITCHES),
-    Quantity("free_before", "that at the end of the run before", PITCHES),
-    Quantity("free_mark", "`free_farthest` where that last grew, by a share", PITCHES),
-    Quantity("free_grown", "when it did", SECONDS),
     Quantity("mark", "distance of the gear where that last grew, by a share", PITCHES),
     Quantity("grown", "when it did", SECONDS),
+    # of free gears under torques that have ended, which a chain has carried over; at the zero itself without
+    Quantity("free_time", "up to which free gears have been followed", SECONDS),
+    Quantity("free_travel", "of free gears then", PITCHES),
+    Quantity("free_speed", "of free gears then", Unit("pb/s")),
+    Quantity("free_farthest", "largest size of `free_travel`", PITCHES),
+    Quantity("free_before", "that where the gear broke away before", PITCHES),
+    Quantity("free_mark", "`free_farthest` where that last grew, by a share", PITCHES),
+    Quantity("free_grown", "when it did", SECONDS),
     Quantity("onset", "when free gears have begun to move; 0 before", SECONDS),
     Quantity("excess", "largest torque of the drive at the gear beyond the dry load", TORQUE),
     Quantity("driven_time", "for which there was any", SECONDS),
@@ -194,9 +194,8 @@ _STANDING_FIELDS: Final = (
     count(
         "zero_count", "zeros in use, from which on the gear has stayed within half a pitch", high=MOST_ZEROS
     ),
-    Quantity(
-        "zero", "in the order of time, then `HIGH` and `SPARE`", kind=_ZERO_FIELDS, shape=(MOST_ZEROS + 2,)
-    ),
+    Quantity("zero", "in the order of time, then `HIGH`", kind=_ZERO_FIELDS, shape=(MOST_ZEROS + 1,)),
+    flag("undriven", "1 if one of those in use is not `driven`"),
     count("slow_count", "entries in use", high=MOST_SLOW),
     Quantity(
         "slow", "in the order of time, each faster than the one before", kind=_SLOW_FIELDS, shape=(MOST_SLOW,)
@@ -207,6 +206,22 @@ _STANDING_FIELDS: Final = (
     Quantity("low", "position farthest back since it last went back", PITCHES),
     flag("left", "1 once the gear has left half a pitch from the start of a chain"),
     Quantity("rest_time", "for which dry friction has held the gear", SECONDS),
+    Quantity("look_time", "when `mark` of the zeros is looked at next", SECONDS),
+    count("way", "sign of the speed at the last accepted time", low=-1, high=1),
+    count("held", "what friction held then", low=FREE, high=AT_REST),
+    Quantity("place", "of the gear at its last zero", PITCHES),
+    Quantity("place_time", "when that was", SECONDS),
+    flag("near", "1 as long as the gear is near that place"),
+    Quantity("near_time", "until when it was", SECONDS),
+    Quantity("near_position", "where it was then", PITCHES),
+    Quantity("slip_time", "when dry friction last let go", SECONDS),
+    Quantity("slip_position", "where the gear was then", PITCHES),
+    flag("slip_from_rest", "1 if dry friction held the gear until then"),
+    Quantity("leave_time", "when the gear last left half a pitch from the first zero", SECONDS),
+    Quantity("leave_position", "where it was then", PITCHES),
+)
+
+_STOOD_FIELDS: Final = (
     count("stand_count", "standstills that are kept", high=MOST_STANDSTILLS),
     Quantity(
         "standstill",
@@ -220,17 +235,6 @@ _STANDING_FIELDS: Final = (
     Quantity("last_end", "end of the last of them", SECONDS),
     Quantity("breakaway", "drive torque then, or at the start", TORQUE),
     Quantity("start_torque", "drive torque at the start", TORQUE),
-    Quantity("look_time", "when `mark` of the zeros is looked at next", SECONDS),
-    count("way", "sign of the speed at the last accepted time", low=-1, high=1),
-    count("held", "what friction held then", low=FREE, high=AT_REST),
-    Quantity("place", "of the gear at its last zero", PITCHES),
-    Quantity("place_time", "when that was", SECONDS),
-    flag("near", "1 as long as the gear is near that place"),
-    Quantity("near_time", "until when it was", SECONDS),
-    Quantity("near_position", "where it was then", PITCHES),
-    Quantity("slip_time", "when dry friction last let go", SECONDS),
-    Quantity("slip_position", "where the gear was then", PITCHES),
-    flag("slip_from_rest", "1 if dry friction held the gear until then"),
 )
 
 _AGEING_FIELDS: Final = (
@@ -284,7 +288,8 @@ STATE_FIELDS: Final = (
     Quantity(
         "passage", "what has been since the last mesh exit of each flank", kind=_PASSAGE_FIELDS, shape=(2,)
     ),
-    Quantity("standing", "where the gear stands, and what free gears would do", kind=_STANDING_FIELDS),
+    Quantity("standing", "what says where the gear stands", kind=_STANDING_FIELDS),
+    Quantity("stood", "standstills that have ended", kind=_STOOD_FIELDS),
     Quantity("history", "histories of the tooth pairs", kind=HISTORY_FIELDS, shape=(2 * SLOTS_HIGH,)),
     *ASPERITY_COUNTS,
     count("cycle_events", "both since the last mesh mark"),
@@ -304,4 +309,5 @@ STATE_FIELDS: Final = (
 
 HISTORY: Final = record_type(*HISTORY_FIELDS)
 EXTREMES: Final = record_type(*EXTREMES_FIELDS)
+STANDING: Final = record_type(*_STANDING_FIELDS)
 STATE: Final = record_type(*STATE_FIELDS)

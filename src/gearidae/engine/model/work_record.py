@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from gearidae.engine.model.checkpoint_record import STANDING
 from gearidae.engine.model.record_types import (
     INT,
     MATERIALS,
@@ -130,6 +131,9 @@ TRACK: Final = record_type(  # of the extremes
     ("planned", REAL),  # time of the zero for which the end of a run that is to stop is planned, plus 1 [s]
     ("stop_time", REAL),  # when that end is; 0 for none [tau]
 )
+
+MOST_LEAVINGS: Final = 16
+"""In a block: one takes a movement by half a pitch, which is hundreds of steps."""
 
 EXPOSED: Final = record_type(  # a pair where its exposures have last been added up
     ("known", INT),  # 1 if it was within the cut-off there
@@ -310,6 +314,8 @@ WORK: Final = record_type(
     ("resistance", RESISTANCE),  # of the energy balance
     ("energy_now", record_type(*ENERGY_NOW)),  # of a look at the energy balance
     ("track", TRACK),  # of the extremes
+    ("leavings", INT),  # times in this block at which the gear has left half a pitch from its first zero
+    ("leaving", STANDING, (MOST_LEAVINGS,)),  # what was known of where it stood then
     ("lag_time", REAL),  # time to which the lags of joining are followed [tau]
     ("exposing", EXPOSING),  # of the exposures
     ("known", INT, (2 * SLOTS_HIGH,)),  # histories of the pairs that have been listed last [index]

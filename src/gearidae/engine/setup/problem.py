@@ -27,6 +27,7 @@ from gearidae.engine.model.state import (
 from gearidae.engine.observers.exposures.bins import exposures_of
 from gearidae.engine.observers.extremes.units import extremes_in_si
 from gearidae.engine.observers.finish import look_at
+from gearidae.engine.observers.standing.judge import Judge
 from gearidae.engine.pairs.orbit import orbit_anew
 from gearidae.engine.setup import checkpoint as checkpoints
 from gearidae.engine.setup.kept_asperities import restore_asperities
@@ -85,6 +86,8 @@ class Problem:
         ``run.method`` of the scene.
     addresses : Addresses
         Where the model lies in this process, for compiled functions that are called from Python.
+    judge : Judge
+        Says where the gear stands.
     """
 
     model: Model
@@ -98,10 +101,12 @@ class Problem:
     deeper: Callable[[], Problem] | None = None
     method: str = "auto"
     addresses: Addresses = field(init=False)
+    judge: Judge = field(init=False)
 
     def __post_init__(self) -> None:
         """Note where the model lies."""
         self.addresses = Addresses(self.model)
+        self.judge = Judge(self.model, self.addresses.place)
 
     @property
     def time_unit(self) -> float:
@@ -194,6 +199,7 @@ class Problem:
         state, rates : ndarray, shape (n,)
             Scaled state there, and its rate.
         """
+        self.judge.follow(time)
         m, exposures, balance, extremes = self.model, exposures_of(self.model), None, None
         before, exposed = (copied(m.state), copied(m.work)), exposures.copy()
         look_at(self.addresses.place, time, state, rates)
@@ -203,7 +209,7 @@ class Problem:
             )
             balance = EnergyBalance(energies, time=time * self.time_unit)
         if m.scene.follow.extremes:
-            extremes = extremes_in_si(m, self.addresses.place, time, state)
+            extremes = extremes_in_si(m, self.judge, time, state)
         for record, copy in zip((m.state, m.work), before, strict=True):
             assign(record, copy)
         if m.scene.orbit != 0.0:
@@ -221,6 +227,7 @@ class Problem:
         state : ndarray, shape (n,)
             Scaled state there.
         """
+        self.judge.follow(time)
         self.model.state.time = time
         return checkpoints.pack(self.model, self.digest, self.depth, state)
 

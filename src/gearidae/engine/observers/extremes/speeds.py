@@ -17,7 +17,7 @@ from gearidae.engine.laws.pairs import mesh_force
 from gearidae.engine.model.checkpoint_record import WINDOWS
 from gearidae.engine.model.state import Floats, Model, Record, U, V
 from gearidae.engine.motion.pair_forces import forces_at
-from gearidae.engine.observers.standing.free_torques import slowest_period
+from gearidae.engine.observers.standing.torques import slowest_period
 from gearidae.formulas.interpolation import cubic
 from gearidae.formulas.roots import HALVINGS, extremum_of_cubic, zero_of_cubic
 from gearidae.records import RUN_PARTS

@@ -9,6 +9,7 @@ from typing import Any
 
 from gearidae.engine.model.state import PHASE, ROLLER, Floats, Model, V, W, plain
 from gearidae.engine.observers.exposures.bins import ROWS, exposure_table
+from gearidae.engine.observers.standing.judge import Judge
 from gearidae.engine.observers.standing.units import standing_now
 from gearidae.records import Extremes
 from gearidae.records.extremes import ASPERITY_COUNTS, FORCE_EXTREMES, SPEED_EXTREMES, SPEEDS_NOW
@@ -16,15 +17,15 @@ from gearidae.records.quantity import in_si
 from gearidae.records.standing import STANDING_NOW
 
 
-def extremes_in_si(m: Model, place: int, time: float, y: Floats) -> Extremes:
+def extremes_in_si(m: Model, judge: Judge, time: float, y: Floats) -> Extremes:
     """Take the extremes out of a model.
 
     Parameters
     ----------
     m : Model
         Its extremes include the state at `time`.
-    place : int
-        Of the model, from `gearidae.engine.model.addresses.Addresses`.
+    judge : Judge
+        Of the run.
     time : float
         Reached, over tau.
     y : ndarray, shape (n,)
@@ -37,7 +38,7 @@ def extremes_in_si(m: Model, place: int, time: float, y: Floats) -> Extremes:
     numbers |= in_si(SPEED_EXTREMES, m.state.extremes, s)
     speeds = _speeds(e, float(s.phase_rate), time, float(y[PHASE] + m.state.turns))
     numbers |= in_si(SPEEDS_NOW, speeds | {"final_speed": float(y[W])}, s)
-    numbers |= in_si(STANDING_NOW, standing := standing_now(m, place, time, y), s)
+    numbers |= in_si(STANDING_NOW, standing := standing_now(m, judge, time, y), s)
     if not e.part[0]["begun"]:
         numbers["speed_fall"] = numbers["speed_rise"] = math.nan
     return Extremes(numbers, standstill_list=standing["standstill_list"], exposures=_exposures(m))

@@ -1,48 +1,30 @@
-"""Where a gear stands, followed over accepted times and events, and what is said of it at an end."""
+"""What says where a gear stands, followed over accepted times and events; the judge reads it at the end of a block."""
 
 from __future__ import annotations
 
-import math
 from typing import Final
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.model.addresses import model_at
-from gearidae.engine.model.checkpoint_record import HIGH, MOST_STANDSTILLS, SPARE
+from gearidae.engine.model.checkpoint_record import HIGH
 from gearidae.engine.model.record_types import AT_REST, FREE, HELD_GEAR
-from gearidae.engine.model.state import DRIVE, PHASE, STOPS, Floats, Model, Record, W
-from gearidae.engine.observers.standing.free_gears import follow_free
-from gearidae.engine.observers.standing.free_torques import (
-    enter_segments,
-    excess,
-    free_torque,
-    largest_excess,
-    slowest_period,
-)
+from gearidae.engine.model.state import DRIVE, PHASE, Floats, Model, Record, W
+from gearidae.engine.model.work_record import MOST_LEAVINGS
 from gearidae.engine.observers.standing.zeros import (
     add_zero,
-    copy_zero,
-    distance,
     drop_left,
-    follow_zeros,
-    free_advance,
     look_at_distances,
     make_zero,
+    note_drive,
     note_slow,
-    settles,
-    standing_since,
-    stood_until,
 )
 from gearidae.formulas.interpolation import cubic
 from gearidae.formulas.roots import HALVINGS, departure_of_cubic, extremum_of_cubic, zero_of_cubic
-from gearidae.laws.shaft.schedule import straight_until
+from gearidae.laws.shafts import driving_force
 from gearidae.records.standing import HALF_PITCH
 
 NEAR: Final = 3.0
 """Roughnesses along the line of action within which a gear is where it stood: the reach of asperities that cling."""
-LOOKS_AHEAD: Final = 4096
-"""Times at most, besides knots of schedules, at which a run that is to stop looks at what is still to come."""
-_STICKS: Final = STOPS.index("sticks")
 
 
 @compiled
@@ -53,18 +35,13 @@ def begin(m: Model, t: float, y: Floats) -> None:
         s.low = position
         make_zero(m, HIGH, t * m.scene.time_unit, position, y, y[W] == 0.0)
         s.high_known = 1
-        s.breakaway = s.start_torque = _drive_torque(m, HIGH, t)
+        torque = driving_force(m, DRIVE, t, 0.0, 0.0) * m.scene.force_unit * m.scene.pinion_radius
+        m.state.stood.breakaway = m.state.stood.start_torque = torque
         if y[W] == 0.0:
             add_zero(m, t, position, y, True)
         s.way, s.held = _sign(y[W]), m.state.hold
-    elif y[W] == 0.0:
-        follow_zeros(m, t)
     if s.direction >= 0 and position > s.zero[HIGH].position:
         s.high_known = 0
-    if s.direction < 0:
-        follow_free(m, HIGH, t, math.inf)
-    if m.scene.stop == _STICKS:
-        plan_stop(m, t)
 
 
 @compiled(inline=True)
@@ -79,13 +56,15 @@ def step(m: Model, here: int, y: Floats) -> None:
         _look_for_zeros(m, here, y, turned)
     s.way = _sign(now.speed)
     if s.zero_count > 0:
+        if s.undriven != 0:
+            note_drive(m, now.time)
         note_slow(m, now.time * unit, abs(now.speed) * m.scene.phase_rate / unit, now.position)
         if s.near != 0 and abs(now.position - s.place) > NEAR * m.scene.phase_rate:
             _go_away(m, last, now)
         if now.time * unit >= s.look_time:
             look_at_distances(m, now.time * unit, now.position)
         if abs(now.position - s.zero[0].position) > HALF_PITCH:
-            leave(m, now.time, now.position)
+            _leave(m, now.time, now.position)
     if s.direction >= 0 and s.high_known != 0 and now.position < s.zero[HIGH].position - HALF_PITCH:
         s.turn_time = now.time * unit if s.direction != 0 else 0.0
         s.direction, s.low = -1, now.position
@@ -116,8 +95,6 @@ def resume(m: Model, t: float, y: Floats) -> None:
     s, sign, position = m.state.standing, _sign(y[W]), y[PHASE] + m.state.turns
     if s.way != 0 and sign != s.way:
         add_zero(m, t, position, y, False)
-        if m.scene.stop == _STICKS:
-            plan_stop(m, t)
     s.way = sign
     if s.held != FREE and m.state.hold != s.held and m.state.hold != AT_REST:
         s.slip_time, s.slip_position = t * m.scene.time_unit, position
@@ -135,29 +112,6 @@ def _go_away(m: Model, last: Record, now: Record) -> None:
     share = departure_of_cubic(begin, 1.0, HALVINGS, 0.0, s.place, NEAR * rate, h, *way)[1]
     s.near, s.near_time = 0, (last.time + share * h) * unit
     s.near_position = cubic(share, h, *way)
-
-
-@compiled(inline=True)
-def _slipped(m: Model) -> bool:
-    """Whether dry friction has let go of the gear since its last zero, near where it stood."""
-    s = m.state.standing
-    near = abs(s.slip_position - s.place) <= NEAR * m.scene.phase_rate
-    return bool(near and s.slip_time >= s.place_time and s.slip_time > 0.0)
-
-
-@compiled(inline=True)
-def _break_away(m: Model, t: float, position: float) -> tuple[float, float]:
-    """When [s] and where the gear broke away that leaves half a pitch now.
-
-    With the last slip near where it stood; where none has been since the last zero of its speed, as it went away from
-    there. Neither depends on how fast the torque rises, as the speed does.
-    """
-    s = m.state.standing
-    if _slipped(m):
-        return s.slip_time, s.slip_position
-    if s.near != 0:
-        return t * m.scene.time_unit, position
-    return s.near_time, s.near_position
 
 
 @compiled
@@ -186,8 +140,6 @@ def _look_for_zeros(m: Model, here: int, y: Floats, turned: bool) -> None:
         if cubic(low, h, *speeds) * w0 < 0.0:
             _add_between(m, last, now, y, 0.0, low)
             _add_between(m, last, now, y, low, 1.0)
-    if m.scene.stop == _STICKS:
-        plan_stop(m, now.time)
 
 
 @compiled
@@ -201,210 +153,12 @@ def _add_between(m: Model, last: Record, now: Record, y: Floats, low: float, hig
 
 
 @compiled_once(SOLVER)
-def leave(m: Model, t: float, position: float) -> None:
-    """Leave half a pitch from the first zero: note the standstill that lies behind, if there is one."""
-    note_stood(m, t, position)
+def _leave(m: Model, t: float, position: float) -> None:
+    """Leave half a pitch from the first zero, and keep for the judge what is known of where the gear stood."""
+    s = m.state.standing
+    s.leave_time, s.leave_position = t * m.scene.time_unit, position
+    if m.work.leavings < MOST_LEAVINGS:
+        m.work.leaving[m.work.leavings] = s
+        m.work.leavings += 1
     drop_left(m, position)
-    if m.scene.stop == _STICKS:
-        plan_stop(m, t)
-
-
-@compiled
-def note_stood(m: Model, t: float, position: float) -> None:
-    """Note a standstill that has ended: as the gear broke away, or as it began to move as free gears do."""
-    s, i, length = m.state.standing, 0, m.scene.end * m.scene.time_unit
-    limit, place = _break_away(m, t, position)
-    held = NEAR * m.scene.phase_rate if _slipped(m) and s.slip_from_rest != 0 else 0.0
-    stood = standing_since(m, limit, place, length, held)
-    if stood >= 0:
-        if s.zero[stood].spent == 0:
-            z = s.zero[SPARE]
-            ways = distance(z, place), free_advance(z, limit)
-            _note_standstill(m, stood, limit, ways, settles(z, limit, place))
-        return
-    while i < s.zero_count:
-        if s.zero[i].spent == 0 and s.zero[i].time < limit:
-            time, way, free = stood_until(m, i, limit, length)
-            if time > 0.0:
-                _note_standstill(m, i, time, (way, free), 0)
-                return
-        i += 1
-
-
-@compiled
-def _note_standstill(m: Model, i: int, time: float, ways: tuple[float, float], settled: int) -> None:
-    """Note a standstill from zero `i` to a time [s], with the advances; of the drive since then `SPARE` knows."""
-    s = m.state.standing
-    z, drive = s.zero[i], s.zero[SPARE]
-    start, rest = standstill_begin(m, z), s.rest_time - z.rest_time
-    for j in range(s.zero_count):
-        if s.zero[j].time <= time:
-            s.zero[j].spent = 1
-    s.standstills += 1
-    s.standing_time += time - start
-    s.standing_rest += min(rest, time - start)
-    s.last_end, s.breakaway = time, _drive_torque(m, i, time / m.scene.time_unit)
-    at = s.stand_count
-    if at == MOST_STANDSTILLS:  # the shortest makes room
-        at = 0
-        for j in range(1, MOST_STANDSTILLS):
-            standstill, least = s.standstill[j], s.standstill[at]
-            if standstill.end - standstill.begin < least.end - least.begin:
-                at = j
-        if time - start <= s.standstill[at].end - s.standstill[at].begin:
-            return
-        for j in range(at, MOST_STANDSTILLS - 1):
-            s.standstill[j] = s.standstill[j + 1]
-        at = MOST_STANDSTILLS - 1
-    else:
-        s.stand_count += 1
-    kept = s.standstill[at]
-    kept.begin, kept.end, kept.settled = start, time, settled
-    kept.advance, kept.free_advance = ways
-    kept.since, kept.breakaway = z.time, s.breakaway
-    kept.excess, kept.driven_time, kept.rest_time = drive.excess, drive.driven_time, min(rest, time - start)
-
-
-@compiled
-def standstill_begin(m: Model, z: Record) -> float:
-    """When a standstill begins [s]: no two of them overlap, and one that begins at a start at rest begins there."""
-    s = m.state.standing
-    if s.left == 0 and s.zero[0].start != 0 and s.standstills == 0:
-        return s.zero[0].time
-    return max(z.time, s.last_end)
-
-
-@compiled
-def _drive_torque(m: Model, i: int, t: float) -> float:
-    """Torque of the drive on a pinion at rest [N m]."""
-    first, second, third = m.state.segment[0], m.state.segment[1], m.state.segment[2]
-    enter_segments(m, t, t)
-    torque = free_torque(m, i, DRIVE, t, 0.0, 0.0) * m.scene.force_unit * m.scene.pinion_radius
-    m.state.segment[0], m.state.segment[1], m.state.segment[2] = first, second, third
-    return torque
-
-
-@compiled
-def plan_stop(m: Model, t: float) -> None:
-    """Set when a run ends that is to end in a standstill that sticks, if the gear does not leave its first zero."""
-    s, k, i = m.state.standing, m.work.track, 0
-    while i < s.zero_count and s.zero[i].spent != 0:
-        i += 1
-    if i == s.zero_count:
-        k.planned = k.stop_time = 0.0
-    elif k.planned != s.zero[i].time + 1.0:
-        k.planned, k.stop_time = s.zero[i].time + 1.0, _stop_time(m, i, t)
-
-
-@compiled_once(SOLVER)
-def _stop_time(m: Model, i: int, t: float) -> float:
-    """Time over tau when free gears have turned by a pitch and nothing ahead drives harder than before; 0 if never."""
-    s = m.state.standing
-    copy_zero(m, SPARE, i)
-    end, begin = follow_free(m, SPARE, m.scene.end, 1.0), s.zero[i].time / m.scene.time_unit
-    if s.zero[SPARE].free_farthest < 1.0:
-        return 0.0
-    end = max(end, begin + slowest_period(m), _hardest(m, max(begin, m.scene.start)))
-    # behind the present time, so that it is a root
-    return max(end, t + 1e-9 * (m.scene.end - m.scene.start))
-
-
-@compiled
-def _hardest(m: Model, t: float) -> float:
-    """Time at which the drive exceeds the load most, of a gear that stands at the zero `SPARE`."""
-    first, second, third = m.state.segment[0], m.state.segment[1], m.state.segment[2]
-    longest, most, time = m.scene.end - t, -math.inf, t
-    if m.scene.free_step > 0.0:
-        longest = max(m.scene.free_step, longest / LOOKS_AHEAD)
-    while True:
-        knot = enter_segments(m, t, m.scene.end)
-        size = largest_excess(m, SPARE, t, t, 0.0)
-        if size > most + 1e-9 * abs(most) or most == -math.inf:
-            most, time = size, t
-        if t >= m.scene.end:
-            break
-        t = min(straight_until(m, t, knot), t + longest)
-    m.state.segment[0], m.state.segment[1], m.state.segment[2] = first, second, third
-    return time
-
-
-@compiled
-def _standing_zero(m: Model, t: float, position: float) -> int:
-    """Zero from which the gear stands at an end at a position; -1 if none, and a standstill before is noted."""
-    if m.state.standing.zero_count == 0:
-        return -1
-    time = t * m.scene.time_unit
-    i = standing_since(m, time, position, time, 0.0)
-    if i < 0:
-        note_stood(m, t, position)
-    return i
-
-
-STANDING_NUMBERS: Final = 18
-"""Numbers that `standing_at` leaves, in the order in which it writes them."""
-
-
-@compiled
-def standing_at(place: int, t: float, y: Floats, out: Floats) -> None:
-    """Say where the gear stands if the run ends here, and how far it has gone back.
-
-    A standstill that has ended then is noted, and is to be forgotten if the run does not end. The free gears of a zero
-    are followed for good only where a standstill cannot have ended before.
-
-    Parameters
-    ----------
-    place : int
-        Of the model, from `gearidae.engine.model.addresses.Addresses`.
-    t : float
-        Time over tau.
-    y : ndarray, shape (n,)
-        State there.
-    out : ndarray, shape (STANDING_NUMBERS,)
-        Filled in; see `gearidae.engine.observers.extremes.units`.
-    """
-    m = model_at(place)
-    s, time, position = m.state.standing, t * m.scene.time_unit, y[PHASE] + m.state.turns
-    out[:] = 0.0
-    i = _standing_zero(m, t, position)
-    out[0] = 1.0 if i >= 0 else 0.0
-    if s.zero_count > 0:
-        if _break_away(m, t, position)[0] >= time:
-            follow_free(m, max(i, 0), t, math.inf)
-        copy_zero(m, SPARE, max(i, 0))
-        follow_free(m, SPARE, t, math.inf)
-        z = s.zero[SPARE]
-        never = s.left == 0 and s.zero[0].start != 0
-        out[1], out[2] = s.zero[0].time if never else z.time, float(s.zero[0].exits if never else z.exits)
-        out[3], out[4] = distance(z, position), free_advance(z, time)
-        out[5], out[6] = z.driven_time, z.excess
-        out[7], out[8] = s.rest_time - z.rest_time, standstill_begin(m, z)
-        out[17] = settles(z, time, position)
-        out[9] = excess(m, SPARE, t) * m.scene.force_unit * m.scene.gear_radius
-    if s.direction < 0:
-        follow_free(m, HIGH, t, math.inf)
-        high = s.zero[HIGH]
-        out[10], out[11] = high.position - position, max(-high.free_travel, 0.0)
-        out[12], out[13], out[14] = high.time, float(high.exits), s.turn_time
-    out[15], out[16] = slowest_period(m) * m.scene.time_unit, 1.0 if is_at_rest(m) else 0.0
-
-
-@compiled
-def settle_standing_at(place: int, t: float, y: Floats) -> None:
-    """Follow all free gears to the end of a run, after which torques are others.
-
-    Free gears are not followed back in time. A standstill that has ended before is therefore noted now, and one that is
-    noted after this ends here or later.
-    """
-    m = model_at(place)
-    s, time, position = m.state.standing, t * m.scene.time_unit, y[PHASE] + m.state.turns
-    _standing_zero(m, t, position)
-    broken = min(_break_away(m, t, position)[0] / m.scene.time_unit, t)
-    s.slow_count = 0
-    note_slow(m, time, abs(y[W]) * m.scene.phase_rate / m.scene.time_unit, position)
-    for i in range(s.zero_count):
-        copy_zero(m, SPARE, i)
-        follow_free(m, SPARE, broken, math.inf)
-        s.zero[i].free_before = s.zero[SPARE].free_farthest
-        follow_free(m, i, t, math.inf)
-    if s.direction < 0:
-        follow_free(m, HIGH, t, math.inf)
+    m.work.track.planned = m.work.track.stop_time = 0.0

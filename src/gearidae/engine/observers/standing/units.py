@@ -4,101 +4,74 @@ from __future__ import annotations
 
 import math
 from array import array
-from types import SimpleNamespace
 from typing import Any
 
-import numpy as np
-
 from gearidae.engine.model.record_types import HELD_GEAR
-from gearidae.engine.model.state import Floats, Model, plain
-from gearidae.engine.observers.standing.follow import STANDING_NUMBERS, standing_at
+from gearidae.engine.model.state import Floats, Model
+from gearidae.engine.observers.standing.judge import Judge, Standstill, is_at_rest
 from gearidae.records.standing import NOTICED, SHARE, Holding
 
 
-def standing_now(m: Model, place: int, time: float, y: Floats) -> dict[str, Any]:
+def standing_now(m: Model, judge: Judge, time: float, y: Floats) -> dict[str, Any]:
     """Return the numbers of `STANDING_NOW`, and the list of standstills.
 
     Parameters
     ----------
     m : Model
-    place : int
-        Of the model, from `gearidae.engine.model.addresses.Addresses`.
+    judge : Judge
+        Of the run.
     time : float
         Reached, over tau.
     y : ndarray, shape (n,)
         Scaled state there.
     """
-    numbers, before = np.empty(STANDING_NUMBERS), m.state.standing.copy()
-    standing_at(place, time, y, numbers)
-    stands, since, exits, advance, free, driven, held, rest, begin, _, *back, period, at_rest, settled = (
-        numbers.tolist()
-    )
-    s, e, now = plain(m.state.standing.copy()), m.state.extremes, time * float(m.scene.time_unit)
-    _forget(m.state.standing, before)
-    turned, free_turned, back_time, back_exits, turn_time = back
-    settled = int(settled)
-    gone = turned > 0.0 and (turn_time == 0.0 or turn_time <= now - period)
-    holding = (
-        _holding(m, bool(at_rest) or rest > 0.5 * (now - begin), held, _in_well(advance, free, settled))
-        if stands or at_rest
-        else Holding(0)
-    )
+    said, now = judge.now(time, y), time * float(m.scene.time_unit)
+    stood, last, stands, at_rest = said.stood, said.row, said.stands, is_at_rest(m)
+    turned, free_turned, back_time, back_exits, turn_time = said.back
+    gone = turned > 0.0 and (turn_time == 0.0 or turn_time <= now - said.period)
+    rests = at_rest or last.rest_time > 0.5 * (now - last.begin)
+    well = _in_well(last.advance, last.free_advance, last.settled)
+    holding = _holding(m, rests, last.excess, well) if stands or at_rest else Holding(0)
     if at_rest and m.state.hold == HELD_GEAR:
         holding &= ~Holding.FLANK_FRICTION  # the pinion moves
-    ended = [plain(standstill) for standstill in s.standstill[: s.stand_count]]
-    counted = [standstill for standstill in ended if _counts(standstill, now)]
-    short = [standstill for standstill in ended if not _counts(standstill, now)]
-    last_end, breakaway = s.last_end, s.breakaway
+    counted = [row for row in stood.rows if _counts(row, now)]
+    short = [row for row in stood.rows if not _counts(row, now)]
+    last_end, breakaway = stood.last_end, stood.breakaway
     if short and short[-1].end == last_end:
-        last = counted[-1] if counted else SimpleNamespace(end=0.0, breakaway=s.start_torque)
-        last_end, breakaway = last.end, last.breakaway
-    rows = [_row(m, standstill) for standstill in counted]
+        last_end, breakaway = (
+            (counted[-1].end, counted[-1].breakaway) if counted else (0.0, stood.start_torque)
+        )
+    rows = [_row(m, row) for row in counted]
     if stands:
-        rows.append([begin, math.nan, advance, free, held, float(holding), driven, rest, float(settled)])
-    known = s.zero_count > 0
+        rows.append(_numbers(last, holding))
     return {
-        "stick_time": since if stands else math.nan,
-        "stick_exits": int(exits if stands else back_exits if gone else e.mesh_exits),
-        "advance": advance if known else math.nan,
-        "free_advance": free if known else math.nan,
-        "driven_time": driven if known else math.nan,
-        "held_torque": held if known else math.nan,
-        "settled": settled if known else 0,
+        "stick_time": said.since if stands else math.nan,
+        "stick_exits": said.exits if stands else back_exits if gone else int(m.state.extremes.mesh_exits),
+        "advance": last.advance,
+        "free_advance": last.free_advance,
+        "driven_time": last.driven_time,
+        "held_torque": last.excess,
+        "settled": last.settled,
         "holding": int(holding),
         "turned_back": turned if gone else 0.0,
         "free_turned_back": free_turned if gone else 0.0,
         "back_time": back_time if gone else math.nan,
-        "standstills": s.standstills + int(stands) - len(short),
-        "standing_time": s.standing_time
-        + (now - begin if stands else 0.0)
-        - sum(standstill.end - standstill.begin for standstill in short),
-        "standing_rest_time": s.standing_rest
-        + (rest if stands else 0.0)
-        - sum(standstill.rest_time for standstill in short),
-        "start_time": math.nan if not s.left else last_end,
-        "breakaway_torque": breakaway if s.left else math.nan,
-        "rest_time": s.rest_time,
+        "standstills": stood.number + int(stands) - len(short),
+        "standing_time": stood.standing_time
+        + (now - last.begin if stands else 0.0)
+        - sum(row.end - row.begin for row in short),
+        "standing_rest_time": stood.standing_rest
+        + (last.rest_time if stands else 0.0)
+        - sum(row.rest_time for row in short),
+        "start_time": last_end if m.state.standing.left else math.nan,
+        "breakaway_torque": breakaway if m.state.standing.left else math.nan,
+        "rest_time": float(m.state.standing.rest_time),
         "followed_time": now,
         "standstill_list": array("d", [number for row in rows for number in row]),
     }
 
 
-def _forget(s: Any, before: Any) -> None:
-    """Forget a standstill that has been noted as for the end of a run: where it goes on it may end otherwise."""
-    for name in (
-        "stand_count",
-        "standstill",
-        "standstills",
-        "standing_time",
-        "standing_rest",
-        "last_end",
-        "breakaway",
-    ):
-        s[name] = before[name]
-    s["zero"]["spent"] = before["zero"]["spent"]
-
-
-def _counts(standstill: Any, until: float) -> bool:
+def _counts(standstill: Standstill, until: float) -> bool:
     """Whether a standstill that has ended is one of a chain so far: its hundredth has grown since it was noted."""
     return bool(
         standstill.free_advance >= NOTICED or standstill.end - standstill.since > SHARE * until * (1.0 - 1e-9)
@@ -110,23 +83,15 @@ def _in_well(advance: float, free_advance: float, settled: int) -> bool:
     return settled == 2 and 0.0 < 0.5 * free_advance <= advance
 
 
-def _row(m: Model, standstill: Any) -> list[float]:
+def _row(m: Model, row: Standstill) -> list[float]:
     """Return the `COLUMNS` of a standstill that has ended."""
-    well = _in_well(standstill.advance, standstill.free_advance, standstill.settled)
-    at_rest = standstill.rest_time > 0.5 * (standstill.end - standstill.begin)
-    holding = _holding(m, at_rest, standstill.excess, well)
-    kept = (
-        standstill.begin,
-        standstill.end,
-        standstill.advance,
-        standstill.free_advance,
-        standstill.excess,
-        holding,
-        standstill.driven_time,
-        standstill.rest_time,
-        standstill.settled,
-    )
-    return [float(number) for number in kept]
+    well = _in_well(row.advance, row.free_advance, row.settled)
+    return _numbers(row, _holding(m, row.rest_time > 0.5 * (row.end - row.begin), row.excess, well))
+
+
+def _numbers(row: Standstill, holding: Holding) -> list[float]:
+    kept = (row.begin, row.end, row.advance, row.free_advance, row.excess, holding)
+    return [float(number) for number in (*kept, row.driven_time, row.rest_time, row.settled)]
 
 
 def _holding(m: Model, at_rest: bool, held: float, in_well: bool) -> Holding:
