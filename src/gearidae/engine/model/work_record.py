@@ -132,7 +132,7 @@ TRACK: Final = record_type(  # of the extremes
     ("stop_time", REAL),  # when that end is; 0 for none [tau]
 )
 
-MOST_LEAVINGS: Final = 16
+MOST_LEAVINGS: Final = 8
 """In a block: one takes a movement by half a pitch, which is hundreds of steps."""
 
 EXPOSED: Final = record_type(  # a pair where its exposures have last been added up
@@ -314,8 +314,6 @@ WORK: Final = record_type(
     ("resistance", RESISTANCE),  # of the energy balance
     ("energy_now", record_type(*ENERGY_NOW)),  # of a look at the energy balance
     ("track", TRACK),  # of the extremes
-    ("leavings", INT),  # times in this block at which the gear has left half a pitch from its first zero
-    ("leaving", STANDING, (MOST_LEAVINGS,)),  # what was known of where it stood then
     ("lag_time", REAL),  # time to which the lags of joining are followed [tau]
     ("exposing", EXPOSING),  # of the exposures
     ("known", INT, (2 * SLOTS_HIGH,)),  # histories of the pairs that have been listed last [index]
@@ -351,4 +349,6 @@ WORK: Final = record_type(
     # by history: number of the pair within the cut-off plus 0.5, so that 0 is none
     ("within", REAL, (2 * SLOTS_HIGH,)),
     ("impact", FOLLOWED, (2 * SLOTS_HIGH,)),  # by history
+    ("leavings", INT),  # times in this block at which the gear has left half a pitch from its first zero
+    ("leaving", STANDING, (MOST_LEAVINGS,)),  # what was known of where it stood then
 )

@@ -25,9 +25,9 @@ from gearidae.engine.observers.standing.torques import drive_at, drive_between, 
 from gearidae.formulas.interpolation import cubic, turning_point
 from gearidae.records.standing import GROWS
 
-RTOL: Final = 1e-7
-"""Of speed and travel in a step of LSODA."""
-ATOL: Final = 1e-9
+RTOL: Final = 3e-7
+"""Of speed and travel in a step of LSODA: what adds up over a run is some 1e-6."""
+ATOL: Final = 1e-8
 """Pitches, and for the speed the same over a window."""
 STEPS: Final = 1024.0
 """Steps of `SCENE.free_step` that a window has at most,"""
@@ -40,7 +40,7 @@ _GRID: Final = np.unique(np.concatenate([np.geomspace(1e-4, 1.0, 64), np.linspac
 _COARSE: Final = np.linspace(0.0, 1.0, 9)
 MANY_KNOTS: Final = 64
 """and fewer between so many knots."""
-_STOP_SPAN: Final = 4.0
+_STOP_SPAN: Final = 1.5
 """Of the time after which they have stopped, the next window: what lies behind the stop has been for nothing."""
 SHORTEST: Final = 1e-8
 """Share of the time of all runs of a chain that a piece of motion has at least: a bound on the work."""
@@ -237,11 +237,11 @@ class FreeGears:
 
     def _solve(self, piece: tuple[float, float], t: float, start: tuple[float, float], sign: float) -> None:
         """Solve their equation over a window in which they turn in one direction, or which ends as they stop."""
-        place, position, lead = self._place, self._zero.position, self._zero.lead
+        place, position, lead, (begin, end) = self._place, self._zero.position, self._zero.lead, piece
 
         def rates(s: float, y: Floats) -> tuple[float, float]:
             x, v = y.tolist()
-            return v, free_acceleration(place, piece, t + s, (position + x, lead), v, sign)
+            return v, free_acceleration(place, begin, end, t + s, position + x, lead, v, sign)
 
         span = min(self._span, piece[1] - t)
         while True:
@@ -250,10 +250,10 @@ class FreeGears:
                 break
             span *= 0.5 * MOST_STEPS / steps
             self._span = span
-        if steps > len(times):  # what is kept has to follow its steps
-            times, y, _ = self._solution(rates, start, np.linspace(0.0, span, 2 * steps))
-        turned = np.flatnonzero(y[1:, 1] * sign <= 0.0) if self._dry else ()
-        last = int(turned[0]) + 1 if len(turned) else len(times)
+        if steps > 3 * len(times):  # what is kept has to follow its steps
+            times, y, _ = self._solution(rates, start, np.linspace(0.0, span, steps))
+        turned = np.flatnonzero(y[1:, 1] * sign <= 0.0) if self._dry else np.empty(0, np.int64)
+        last = int(turned[0]) + 1 if turned.size else len(times)
         ends = np.minimum(t + times[1:last], piece[1]).tolist()
         if last == len(times) and span == piece[1] - t:
             ends[-1] = piece[1]
@@ -263,7 +263,7 @@ class FreeGears:
                 self._span = min(2.0 * self._span, self._longest)
             return
         low, h = float(times[last - 1]), float(times[last] - times[last - 1])
-        share, x = self._stop_within(rates, low, h, tuple(y[last - 1].tolist()), sign)
+        share, x = self._stop_within(rates, low, h, (float(y[last - 1, 0]), float(y[last - 1, 1])), sign)
         least = max(SHORTEST * self._end, 1e-14 * t) if last == 1 else 0.0
         time = min(max(t + low + share * h, self._times[-1] + least), piece[1])
         self._span = min(max(_STOP_SPAN * (time - t), 1e3 * SHORTEST * self._end), self._longest)

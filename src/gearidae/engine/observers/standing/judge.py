@@ -12,7 +12,6 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from gearidae.engine.model.checkpoint_record import HIGH, MOST_STANDSTILLS
-from gearidae.engine.model.record_types import AT_REST, HELD_GEAR
 from gearidae.engine.model.state import PHASE, STOPS, Floats, Model, W
 from gearidae.engine.observers.standing.follow import NEAR
 from gearidae.engine.observers.standing.free_gears import FreeGears, FreeWay, Zero
@@ -463,8 +462,3 @@ class Judge:
             if size > most + 1e-9 * abs(most) or most == -math.inf:
                 time, most = at, size
         return time
-
-
-def is_at_rest(m: Model) -> bool:
-    """Whether dry friction holds the gear."""
-    return bool(m.state.hold in (AT_REST, HELD_GEAR))

@@ -113,7 +113,7 @@ def _go_back(m: Model, kept: tuple[int, int, int, float, float]) -> None:
 
 @compiled
 def free_acceleration(
-    place: int, piece: tuple[float, float], t: float, at: tuple[float, float], speed: float, sign: float
+    place: int, begin: float, end: float, t: float, position: float, lead: float, speed: float, sign: float
 ) -> float:
     """Acceleration [pb/tau^2] of free gears that turn in a direction.
 
@@ -121,21 +121,21 @@ def free_acceleration(
     ----------
     place : int
         Of the model, from `gearidae.engine.model.addresses.Addresses`.
-    piece : tuple of two floats
+    begin, end : float
         Knots between which the time lies, over tau.
     t : float
         Over tau.
-    at : tuple of two floats
-        Position of the gear [pb] and lead of the pinion [sigma].
+    position, lead : float
+        Of the gear [pb], and of the pinion [sigma].
     speed : float
         [pb/tau].
     sign : float
         Of the direction.
     """
     m = model_at(place)
-    kept = _enter_piece(m, piece[0], piece[1])
+    kept = _enter_piece(m, begin, end)
     rate = m.scene.phase_rate
-    force = push(m, t, at[0], at[1], speed / rate) - sign * dry_load(m, t, at[0])
+    force = push(m, t, position, lead, speed / rate) - sign * dry_load(m, t, position)
     _go_back(m, kept)
     return rate * force / (1.0 / m.scene.pinion_inverse_mass + 1.0 / m.scene.gear_inverse_mass)
 
@@ -153,7 +153,16 @@ _end_of_rest = bisected(_rests)
 def rest_of(place: int, piece: tuple[float, float], t: float, at: tuple[float, float]) -> tuple[float, float]:
     """Time from `t` on at which a drive overcomes the dry resistance of gears at rest, and what drives them then.
 
-    At most that of the end of the piece, with 0. Other arguments as for `free_acceleration`.
+    At most that of the end of the piece, with 0.
+
+    Parameters
+    ----------
+    place, t
+        As for `free_acceleration`.
+    piece : tuple of two floats
+        Knots between which the time lies, over tau.
+    at : tuple of two floats
+        Position of the gear [pb] and lead of the pinion [sigma].
     """
     m = model_at(place)
     kept = _enter_piece(m, piece[0], piece[1])
@@ -177,7 +186,7 @@ def drive_between(
 ) -> tuple[float, float]:
     """By how much, scaled, and how long, over tau, the drive exceeds the dry load of a gear that stands.
 
-    Arguments as for `free_acceleration`.
+    Arguments as for `rest_of`.
     """
     m = model_at(place)
     kept = _enter_piece(m, piece[0], piece[1])
@@ -204,7 +213,7 @@ def drive_between(
 
 @compiled
 def drive_at(place: int, piece: tuple[float, float], t: float, at: tuple[float, float]) -> float:
-    """Driving torque on a pinion at rest over its base radius, scaled; arguments as for `free_acceleration`."""
+    """Driving torque on a pinion at rest over its base radius, scaled; arguments as for `rest_of`."""
     m = model_at(place)
     kept = _enter_piece(m, piece[0], piece[1])
     force = driving_force(m, DRIVE, t, _angle(m, DRIVE, at[0], at[1]), 0.0)
@@ -218,7 +227,7 @@ def bound_of_excess(
 ) -> float:
     """Bound of the excess at rest over a time in which schedules go one way, with all harmonics at their amplitudes.
 
-    Of a law the bound is that of its present value. Arguments as for `free_acceleration`.
+    Of a law the bound is that of its present value. Arguments as for `rest_of`.
     """
     m = model_at(place)
     kept = _enter_piece(m, piece[0], piece[1])

@@ -6,9 +6,9 @@ import math
 from array import array
 from typing import Any
 
-from gearidae.engine.model.record_types import HELD_GEAR
+from gearidae.engine.model.record_types import AT_REST, HELD_GEAR
 from gearidae.engine.model.state import Floats, Model
-from gearidae.engine.observers.standing.judge import Judge, Standstill, is_at_rest
+from gearidae.engine.observers.standing.judge import Judge, Standstill
 from gearidae.records.standing import NOTICED, SHARE, Holding
 
 
@@ -26,7 +26,7 @@ def standing_now(m: Model, judge: Judge, time: float, y: Floats) -> dict[str, An
         Scaled state there.
     """
     said, now = judge.now(time, y), time * float(m.scene.time_unit)
-    stood, last, stands, at_rest = said.stood, said.row, said.stands, is_at_rest(m)
+    stood, last, stands, at_rest = said.stood, said.row, said.stands, m.state.hold in (AT_REST, HELD_GEAR)
     turned, free_turned, back_time, back_exits, turn_time = said.back
     gone = turned > 0.0 and (turn_time == 0.0 or turn_time <= now - said.period)
     rests = at_rest or last.rest_time > 0.5 * (now - last.begin)
