@@ -20,11 +20,6 @@ from gearidae.laws.shaft.schedule import segment_ends
 from gearidae.records.standing import GROWS, NOTICED, SETTLED_WITHIN, SHARE, stands
 
 STICKS: Final = STOPS.index("sticks")
-_OF_STANDSTILL: Final = (
-    *("begin", "end", "advance", "free_advance", "excess", "driven_time", "rest_time"),
-    *("since", "breakaway", "settled"),
-)
-"""Fields of the state's record of a standstill."""
 
 
 class Standstill(NamedTuple):
@@ -65,7 +60,7 @@ class Stood:
 
     def __init__(self, record: Any) -> None:
         count = int(record.stand_count)
-        self.rows = [Standstill(*row) for row in record.standstill[:count][list(_OF_STANDSTILL)].tolist()]
+        self.rows = [Standstill(*row) for row in record.standstill[:count][list(Standstill._fields)].tolist()]
         self.number, self.start_torque = int(record.standstills), float(record.start_torque)
         self.standing_time, self.standing_rest = float(record.standing_time), float(record.standing_rest)
         self.last_end, self.breakaway = float(record.last_end), float(record.breakaway)
@@ -74,7 +69,7 @@ class Stood:
         """Write all into the state's record."""
         record.stand_count, record.standstills = len(self.rows), self.number
         for i, row in enumerate(self.rows):
-            for name, value in zip(_OF_STANDSTILL, row, strict=True):
+            for name, value in zip(Standstill._fields, row, strict=True):
                 record.standstill[name][i] = value
         record.standing_time, record.standing_rest = self.standing_time, self.standing_rest
         record.last_end, record.breakaway = self.last_end, self.breakaway
@@ -404,7 +399,7 @@ class Judge:
         """Free gears of a zero; which it is does not change with where the gear has been since."""
         key = z._replace(lowest=0.0, highest=0.0, mark=0.0, grown=0.0, driven=0)
         if key not in self._free:
-            self._free[key] = FreeGears(self._m, self._place, z, self._knots())
+            self._free[key] = FreeGears(self._m, self._place, z, self.knots())
         return self._free[key]
 
     def _forget(self) -> None:
@@ -412,7 +407,7 @@ class Judge:
         times = set(self._m.state.standing.zero["time"].tolist())
         self._free = {key: free for key, free in self._free.items() if key.time in times}
 
-    def _knots(self) -> list[float]:
+    def knots(self) -> list[float]:
         """Times over tau at which schedules and laws begin another piece, and the end of the run."""
         if self._known_knots is None:
             s, tables = self._m.scene, self._m.tables
@@ -452,7 +447,7 @@ class Judge:
 
     def _hardest(self, z: Zero, t: float) -> float:
         """Time over tau from which on nothing drives a gear that stands harder than before."""
-        time, most, knots = t, -math.inf, self._knots()
+        time, most, knots = t, -math.inf, self.knots()
         begins = [0.0, *knots[:-1]]
         for begin, end in zip(begins, knots, strict=True):
             if end <= t:
