@@ -27,11 +27,16 @@ def _ready():
     gd.simulate(PAIR.replace({"run.duration": 1e-6}))
 
 
+PROBLEMS = []
+"""Free gears know their model by its address."""
+
+
 def free_gears(changes, start=0.0):
     """Free gears of a scene from rest at a time [s], and the scene."""
     scene = PAIR.replace(changes)
     problem = make_problem(scene)
     problem.prepare(1e-6, 2)
+    PROBLEMS.append(problem)
     zero = BLANK._replace(time=start, free_time=start, free_grown=start, grown=start)
     return FreeGears(problem.model, problem.addresses.place, zero, problem.judge.knots()), scene
 
@@ -107,18 +112,14 @@ def test_free_gears_stop_at_the_knots_of_laws(knots):
 
 
 def test_free_gears_settle_as_they_approach_their_rest():
-    """A viscous load stops what one pulse has set in motion, from where x grows by v0 T (1 - exp(-t/T))."""
-    decay = {"drive.torque": 0.0, "load.torque": 0.0, "load.drag": 0.0}
-    inertia = Plant.of(PAIR).inertia
-    gears, _ = free_gears(decay | {"load.viscous": inertia / 0.02, "initial.gear_speed": 0.0})
-    assert gears.until(1.0).farthest == 0.0
-    driven = DRIVES["ramp"] | {"drive.schedule": [(0.0, 1e-17), (0.1, 1e-17), (0.1001, 0.0)]}
-    gears, _ = free_gears(
-        driven | decay | {"load.viscous": inertia / 0.02, "drive.schedule": driven["drive.schedule"]}
-    )
+    """A viscous load stops what one pulse has set in motion within a few times I/c = 0.02 s."""
+    damped = {"load.torque": 0.0, "load.drag": 0.0, "load.viscous": Plant.of(PAIR).inertia / 0.02}
+    pulse = {"drive.torque": 0.0, "drive.schedule": [(0.0, 1e-17), (0.1, 1e-17), (0.1001, 0.0)]}
+    gears, _ = free_gears(damped | pulse)
     way = gears.until(1.0)
-    assert 0.1 < way.grown < 0.1 + 5.0 * 0.02
-    assert way.farthest == pytest.approx(way.mark, rel=1e-2)
+    assert 0.1 < way.grown < 0.1 + 10.0 * 0.02
+    assert way.mark < way.farthest < 1.01 * way.mark
+    assert way.driven_time == pytest.approx(0.1001, rel=1e-9)
 
 
 def test_the_bound_of_their_way_is_one():
@@ -130,13 +131,25 @@ def test_the_bound_of_their_way_is_one():
     assert gears.bound(1.0) == gears.until(1.0).farthest == 0.0
 
 
-@pytest.mark.parametrize("speed", [0.0, 30.0])
-def test_where_nothing_stands_no_equation_of_free_gears_is_solved(speed, monkeypatch):
+def test_where_nothing_stands_no_equation_of_free_gears_is_solved(monkeypatch):
     def refuse(*_):
         raise AssertionError("free gears have been followed")
 
     monkeypatch.setattr(FreeGears, "_solution", refuse)
-    scene = gd.preset("teodorescu2009_low_speed")
-    start = {"coating.sam_fraction": 1.0, "run.samples": "off", "initial.gear_speed": speed}
-    ds = gd.simulate(scene.replace(start | {"run.duration": 5e-3}))
+    running = {"coating.sam_fraction": 1.0, "run.samples": "off", "run.duration": 5e-3}
+    ds = gd.simulate(gd.preset("teodorescu2009_low_speed").replace(running))
     assert float(ds.standstills) == 0
+
+
+def test_a_gear_that_starts_at_once_leaves_nothing_to_solve_behind(monkeypatch):
+    """It has stood too short a time to have stood, whatever free gears do: only blocks that end there ask for them."""
+    solved, solution = [], FreeGears._solution
+
+    def count(self, *arguments):
+        solved.append(arguments)
+        return solution(self, *arguments)
+
+    monkeypatch.setattr(FreeGears, "_solution", count)
+    starting = {"coating.sam_fraction": 1.0, "run.samples": "off", "initial.gear_speed": 0.0}
+    gd.simulate(gd.preset("teodorescu2009_low_speed").replace(starting | {"run.duration": 20e-3}))
+    assert len(solved) <= 1
