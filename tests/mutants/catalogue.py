@@ -169,8 +169,8 @@ MUTANTS = (
     Mutant(
         "radius of curvature of the wrong sign",
         "engine/pairs/tooth_pairs.py",
-        "pinion - pinion * pinion * m.scene.sum_curvature",
-        "pinion + pinion * pinion * m.scene.sum_curvature",
+        "pinion - pinion * pinion * sum_curvature",
+        "pinion + pinion * pinion * sum_curvature",
         SHAFTS,
     ),
     Mutant(
