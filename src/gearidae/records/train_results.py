@@ -41,6 +41,9 @@ MESH_TOTALS: Final = (
     "work_out",
 )
 """Totals of each mesh in SI units: what its driver puts into it, and what its driven gear gets of that, among them."""
+WORKS_OF_SHAFTS: Final = ("hub_loss", "hub_sliding", "resistance_loss", "drag_loss")
+WORKS_OF_MESHES: Final = ("adhesion_loss", "damping_loss", "film_loss", "work_in", "work_out")
+"""Totals that are followed with the energy balance; NaN without it, as all of `ENERGIES` are."""
 ENERGIES: Final = (
     "drive_work",
     "radius_work",
@@ -73,7 +76,7 @@ class TrainSolution:
     shaft_totals, mesh_totals : dict of str to ndarray, shape (shafts,) and (meshes,)
         Those of `SHAFT_TOTALS` and `MESH_TOTALS`.
     energy : dict of str to float
-        Those of `ENERGIES`.
+        Those of `ENERGIES`; without the balance they are NaN, and so are works and losses of shafts and meshes.
     rests : dict of str to ndarray, shape (k,)
         Every interval in which a shaft was at rest: ``shaft``, ``begin`` and ``end`` [s], in the order of their ends.
     status, message : str

@@ -88,11 +88,14 @@ def _refuse(scene: TrainScene, train: Train) -> None:
     """Refuse what a train cannot be run with yet."""
     if all(mesh.b != train.load for mesh in train.meshes):
         raise SceneError("load.shaft", train.shafts[train.load].name, "must be a shaft that a mesh drives")
-    drive, run = scene.drive, scene.run
+    drive, initial, run = scene.drive, scene.initial, scene.run
     refused = (
+        (initial.rest_time > 0.0, "initial.rest_time", "friction of its joints does not age"),
         (bool(drive.pin_friction_rise), "drive.pin_friction_rise", "friction of its joints does not age"),
         (run.stop == "sticks", "run.stop", "each of its shafts may stick"),
         (run.impacts, "run.impacts", "impacts are a table of one mesh"),
+        (run.method != "auto", "run.method", "a train has a formula of its own; another driver may be chosen"),
+        (run.samples == "ringing", "run.samples", "how its contacts ring is not known before; give a number or a rate"),
         (bool(run.checkpoints), "run.checkpoints", "a train keeps no checkpoints yet"),
     )
     for there, key, reason in refused:

@@ -27,7 +27,7 @@ from gearidae.engine.pairs.mesh_error import MeshError, error_at
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.train.layout import OF_MESH, OF_SHAFT, TrainModel
 from gearidae.laws.shaft.own import law_force
-from gearidae.laws.shafts import acting, driving_force, pinion_force
+from gearidae.laws.shafts import acting, driving_force, is_constant, pinion_force
 
 SETTLED: Final = 1e-15
 """Change of an error of a mesh over the unit of length at which its iteration ends: each step takes it to some 1e-3."""
@@ -184,3 +184,32 @@ def motion(tm: TrainModel, t: float, y: Floats, dy: Floats) -> None:
         dy[last + 1] = train.dry * shafts[train.load].slip * y[n + train.load]
         dy[last + 2] = -train.drags * y[n + train.load]
         dy[last + 3] = train.pin_arm * train.pin * shafts[train.drive].slip * y[n + train.drive]
+
+
+@compiled
+def torque_slopes(tm: TrainModel, t: float, y: Floats) -> tuple[float, float]:
+    """By how much the torques of drive and load [N m] differ at speeds that differ by 1 rad/s.
+
+    Differences are taken over the unit of speed of their meshes.
+    """
+    train, n, own = tm.train[0], len(tm.shafts), tm.own
+    mesh = tm.meshes[train.drive_mesh]
+    m, drive, load = model_at(mesh.place), 0.0, 0.0
+    if not is_constant(m, DRIVE):
+        mesh_state(tm, train.drive_mesh, m, y, own)
+        time, angle = t / mesh.time_unit, torque_angle(m, DRIVE, own[U], own[PHASE])
+        radius = mesh.driver_radius * mesh.time_unit / mesh.length_unit
+        speed = radius * y[n + train.drive]
+        faster = driving_force(m, DRIVE, time, angle, speed + 1.0)
+        change = abs(faster - driving_force(m, DRIVE, time, angle, speed))
+        drive = change * radius * mesh.force_unit * mesh.driver_radius
+    mesh = tm.meshes[train.load_mesh]
+    m = model_at(mesh.place)
+    if not is_constant(m, LOAD):
+        mesh_state(tm, train.load_mesh, m, y, own)
+        time, angle = t / mesh.time_unit, torque_angle(m, LOAD, own[U], own[PHASE])
+        radius = mesh.driven_radius * mesh.time_unit / mesh.length_unit
+        faster = driving_force(m, LOAD, time, angle, own[W] + 1.0)
+        change = abs(faster - driving_force(m, LOAD, time, angle, own[W]))
+        load = change * radius * mesh.force_unit * mesh.driven_radius
+    return drive, load

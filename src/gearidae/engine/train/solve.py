@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 from typing import Final
@@ -15,6 +16,7 @@ from gearidae.engine.integrate.driver import ending_of_flag
 from gearidae.engine.train.build import TrainProblem, make_train
 from gearidae.engine.train.layout import OF_MESH, OF_SHAFT, TrainModel, TrainOutput
 from gearidae.engine.train.loop import advance_train
+from gearidae.engine.train.motion import torque_slopes
 from gearidae.engine.train.observe import (
     COMMON_COLUMNS,
     MESH_COLUMNS,
@@ -27,7 +29,15 @@ from gearidae.engine.train.record import MESH_AT, REST_NUMBERS, SHAFT_AT, TRAIN_
 from gearidae.errors import SceneError
 from gearidae.records import EVENT, Statistics, sample_times
 from gearidae.records.energy import EnergyBalance
-from gearidae.records.train_results import COMMON_SAMPLES, MESH_SAMPLES, SHAFT_SAMPLES, TrainSolution
+from gearidae.records.train_results import (
+    COMMON_SAMPLES,
+    ENERGIES,
+    MESH_SAMPLES,
+    SHAFT_SAMPLES,
+    WORKS_OF_MESHES,
+    WORKS_OF_SHAFTS,
+    TrainSolution,
+)
 from gearidae.scene.scene import TrainScene
 
 ROWS: Final = 4096
@@ -264,7 +274,11 @@ def _totals(
         "pin_loss": pin,
         "throughput": float(tm.train[0].throughput),
     }
-    if scene.run.balance:
+    if not scene.run.balance:
+        for totals, names in ((shaft_totals, WORKS_OF_SHAFTS), (mesh_totals, WORKS_OF_MESHES)):
+            totals.update({name: np.full(len(totals[name]), np.nan) for name in names})
+        energy = dict.fromkeys(ENERGIES, math.nan)
+    else:
         taken = float(lost) + energy["stored_change"] + kinetic
         energy["residual"] = drive + energy["radius_work"] - taken
         energy["residual_bound"] = _bound(problem, energy, float(adhesion.sum()), float(np.abs(before).sum()))
@@ -277,16 +291,21 @@ def _bound(problem: TrainProblem, energy: dict[str, float], adhesion: float, sto
     Works and losses are integrated by the formula of the motion itself, and need no bound of their own.
     """
     tm, rtol = problem.model, problem.scene.run.rtol
-    n, inertia = len(tm.shafts), tm.shafts["inertia"]
-    of_speed = np.sqrt(2.0 * float(tm.train[0].peak_kinetic) * inertia) / (tm.weights[n:] * rtol)
+    train, n, inertia, ratio = tm.train[0], len(tm.shafts), tm.shafts["inertia"], tm.shafts["ratio"]
+    twice, unit = 2.0 * float(train.peak_kinetic), 1.0 / (tm.weights[n:] * rtol)
+    of_speed = np.sqrt(twice * inertia) * unit
+    # the largest speeds of the train as one body
+    top = np.abs(ratio) * math.sqrt(twice / float((inertia * ratio**2).sum()))
+    ends = [int(train.drive), int(train.load)]
+    slopes = np.array(torque_slopes(tm, float(train.time), tm.y))
     balance = EnergyBalance(
         throughput=energy["throughput"],
-        largest=float(tm.train[0].peak_kinetic) + stored,
+        largest=float(train.peak_kinetic) + stored,
         adhesion_loss=adhesion,
         stored_change=energy["stored_change"],
         shaft_change=0.0,
         speed_work=float(of_speed.sum()),
-        torque_work=0.0,
+        torque_work=float((slopes * unit[ends] * top[ends]).sum()) * float(train.time - train.start),
         quadrature_error=0.0,
         pitch_work=0.0,
     )

@@ -1,0 +1,227 @@
+"""What meshes and shafts of a train may have: each against the pair of its own, and against the energy balance.
+
+The load is on the idler, and the second mesh never touches: the first mesh and its shafts must move as the pair does by
+the engine of pairs, which has another formula, other states and another balance.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+from tests.mesh.test_slow_train import idle, offset
+from tests.reference.trains import chain, split
+
+import gearidae as gd
+from gearidae.engine import solve
+from gearidae.engine.train import solve_train
+from gearidae.engine.train.build import make_train
+from gearidae.engine.train.solve import follow_train
+from gearidae.records import EventKind
+from gearidae.records.train_results import ENERGIES, WORKS_OF_MESHES, WORKS_OF_SHAFTS
+from gearidae.scene import Scene
+
+SPEED, FORCE = 1e-7, 1e-5
+ADHERING = {"coating.thickness": 0.0, "coating.sam_fraction": 0.6}
+TABLE = [[0.9, 0.7, 0.4, 0.6], [0.5, 0.8, 0.6, 1.0]] * 9 + [[0.3, 0.9, 0.5, 0.7]]
+"""Coverage of the 19 teeth of the driver at four places."""
+
+
+def bang(t, angle, speed, p):
+    """Torque that is halved within sectors of the driver's angle."""
+    return p[0] if math.cos(200.0 * angle) > 0.3 else 0.5 * p[0]
+
+
+def sector_ends(t, angle, speed, p):
+    return math.cos(200.0 * angle) - 0.3
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _registered():
+    gd.register_torque("sectors_of_a_train", parameters=1, switch=sector_ends)(bang)
+    yield
+    gd.unregister_torque("sectors_of_a_train")
+
+
+LAW = {"name": "sectors_of_a_train", "parameters": [1.4e-11]}
+FEATURES = {
+    "film": {"mesh.film_damping": 2e-4, "mesh.film_gap": 2e-8},
+    "jkr": {"contact.asperity": "jkr", **ADHERING},
+    "dmt": {"contact.asperity": "dmt", **ADHERING},
+    "maugis": {"contact.asperity": "maugis", **ADHERING},
+    "attraction": {"surface.hamaker": 1e-19},
+    "independent coatings": {"contact.asperity": "jkr", **ADHERING, "coating.pairing": "independent"},
+    "coating by place": {"contact.asperity": "jkr", **ADHERING, "coating.pinion_table": TABLE},
+    "radius force": {"mesh.radius_force": True},
+    "static error": {"mesh.static_error": [{"order": 3, "amplitude": "5 nm", "phase": 0.5}]},
+    "runout": {
+        "mesh.pinion_runout": {"eccentricity": "20 nm", "phase": 0.4},
+        "mesh.gear_runout": {"eccentricity": "30 nm", "phase": 1.4},
+    },
+    "pitch errors": {"mesh.pitch_error_rms": "1 nm", "mesh.pitch_error_seed": 3},
+    "held speed": {"drive.torque": 0.0, "drive.speed": 3500.0, "drive.speed_gain": 2e-14},
+    "schedule": {"drive.schedule": [[0.0, 0.0], [1e-5, 2e-12], [3e-5, -2e-12]]},
+    "harmonics": {"drive.harmonic": [{"amplitude": 2e-12, "frequency": "60 kHz"}]},
+    "own law": {"drive.torque": 0.0, "drive.law": LAW},
+    "own law of the load": {"load.law": LAW},
+}
+
+
+def changed(tables, feature):
+    return Scene.from_dict(tables).replace({"run.rtol": 1e-9, **FEATURES[feature]})
+
+
+@cache
+def first_alone(feature, backend="auto"):
+    return solve_train(changed(idle(), feature), t_end=50e-6, samples=6, backend=backend)
+
+
+def as_pair(feature):
+    """The first mesh with its drive and load, as a scene of a pair."""
+    scene = changed(idle(), feature)
+    drive, load = ({**scene.to_dict().get(table, {})} for table in ("drive", "load"))
+    load.pop("shaft")
+    return scene.pair("first").replace({"drive": drive, "load": load})
+
+
+def assert_closes(solution):
+    energy = solution.energy
+    assert solution.status == "finished"
+    assert abs(energy["residual"]) < energy["residual_bound"] < 1e-4 * energy["throughput"]
+
+
+@pytest.mark.parametrize("feature", FEATURES)
+def test_a_mesh_moves_as_the_pair_does(feature):
+    train, pair = first_alone(feature), solve(as_pair(feature), t_end=50e-6, samples=6)
+    for i, name in enumerate(("pinion_speed", "gear_speed")):
+        np.testing.assert_allclose(train.samples["shaft_speed"][i], pair.samples[name], rtol=SPEED)
+    largest = np.abs(pair.samples["mesh_force"]).max()
+    np.testing.assert_allclose(
+        train.samples["mesh_force"][0], pair.samples["mesh_force"], rtol=FORCE, atol=FORCE * largest
+    )
+    np.testing.assert_allclose(
+        train.samples["transmission_error"][0], pair.samples["transmission_error"], rtol=1e-7
+    )
+    np.testing.assert_array_equal(train.samples["shaft_speed"][2], 940.0)
+    assert_closes(train)
+
+
+@pytest.mark.parametrize("feature", FEATURES)
+def test_balance_of_both_meshes_closes(feature):
+    assert_closes(solve_train(changed(chain(hubs=0.1), feature), t_end=60e-6, samples=2))
+
+
+@pytest.mark.parametrize("feature", ["maugis", "held speed", "own law"])
+def test_the_other_driver_gives_the_same(feature):
+    scene = changed(chain(hubs=0.1), feature).replace({"run.rtol": 1e-8})
+    native, portable = (solve_train(scene, t_end=4e-6, samples=3, backend=b) for b in ("native", "sksundae"))
+    np.testing.assert_allclose(portable.samples["shaft_speed"], native.samples["shaft_speed"], rtol=1e-7)
+    np.testing.assert_allclose(portable.samples["mesh_force"], native.samples["mesh_force"], rtol=1e-6)
+    assert_closes(portable)
+
+
+# -- long runs -------------------------------------------------------------------------------------------------------
+
+
+def fast(**changes):
+    """A chain whose last gear turns by a tooth in some 4 us."""
+    tables = chain(load={"torque": 3e-11}, initial={"gear_speed": 2e4, "gap": "36 nm", "mesh_phase": 0.3})
+    return Scene.from_dict(tables).replace(changes)
+
+
+def test_a_long_run_keeps_its_counts():
+    """Whole pitches are taken out of the angle some twenty times: counts, ratios and energies stay."""
+    scene = fast()
+    solution = solve_train(scene, t_end=1.2e-3, samples=13)
+    assert_closes(solution)
+    samples, angle = solution.samples, solution.samples["shaft_angle"]
+    for k, mesh in enumerate(scene.train.meshes):
+        geometry = mesh.geometry
+        pitches = angle[mesh.b] * geometry.gear_teeth / (2.0 * math.pi)
+        assert pitches[-1] > 300.0
+        # a pair leaves at the end of the path of contact, in pitches behind its entry
+        left = mesh.phase - geometry.contact_ratio
+        expected = math.floor(left + pitches[-1]) - math.floor(left)
+        assert solution.mesh_totals["mesh_exits"][k] == expected
+        exits = solution.events["kind"] == int(EventKind.MESH_EXIT)
+        exits &= (solution.events["mesh"] == k) & (solution.events["flank"] == 0)
+        assert exits.sum() == expected
+        np.testing.assert_array_equal(np.diff(solution.events["pair"][exits]), 1)
+        # the angles of both shafts differ by the transmission error alone, from which they are known to 1e-16
+        u = geometry.base_radius_pinion * angle[mesh.a] - geometry.base_radius_gear * angle[mesh.b]
+        change = samples["transmission_error"][k] - samples["transmission_error"][k][0]
+        np.testing.assert_allclose(u, change, rtol=0.0, atol=1e-16)
+
+
+def test_teeth_are_the_same_where_pitches_are_taken_out():
+    """Errors of single teeth, runout, coverage by place and histories, against a run that takes none out."""
+    scene = fast(
+        **FEATURES["coating by place"], **FEATURES["runout"], **FEATURES["pitch errors"], **{"run.rtol": 1e-10}
+    ).replace({"run.duration": 1.5e-4, "run.samples": 4})
+    ends = []
+    for taken in (True, False):
+        problem = make_train(scene)
+        period = float(problem.model.train[0].period)
+        if not taken:
+            problem.model.train[0].period = 1e9
+        ends.append(follow_train(problem, "native"))
+        pitches = ends[-1].samples["shaft_angle"][2, -1] * 76 / (2.0 * math.pi)
+        assert pitches > 2.0 * period
+    for name in ("shaft_speed", "shaft_angle", "transmission_error"):
+        np.testing.assert_allclose(ends[0].samples[name], ends[1].samples[name], rtol=1e-7, atol=1e-12)
+    np.testing.assert_array_equal(ends[0].events["kind"], ends[1].events["kind"])
+    np.testing.assert_array_equal(ends[0].events["pair"], ends[1].events["pair"])
+    for solution in ends:
+        assert_closes(solution)
+
+
+# -- properties ------------------------------------------------------------------------------------------------------
+
+
+def test_a_wheel_that_stands_back_on_the_other_side_swaps_the_idlers():
+    """Up to the phase: shares of a static split path differ by 4e-5 in the mean over a pitch, and by its ringing."""
+    other = split()
+    other["meshes"]["one"]["offset"] = "3 nm"
+    first, second = (
+        solve_train(Scene.from_dict(tables), t_end=300e-6, samples=3001).samples["mesh_force"].mean(axis=1)
+        for tables in (offset(), other)
+    )
+    np.testing.assert_allclose(first, second[[1, 0, 3, 2]], rtol=0.02)
+    assert first[0] > 2.0 * first[1]
+
+
+# -- keys of the run -------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("run.method", "bdf"),
+        ("run.samples", "ringing"),
+        ("run.stop", "sticks"),
+        ("run.impacts", True),
+        ("run.checkpoints", [1e-5]),
+        ("initial.rest_time", 1.0),
+    ],
+)
+def test_what_a_train_does_not_do_is_refused(key, value):
+    with pytest.raises(gd.SceneError, match=f"{key}.*several meshes") as caught:
+        solve_train(Scene.from_dict(chain()).replace({key: value}))
+    assert caught.value.key == key
+
+
+def test_other_keys_of_a_run_are_followed():
+    turn = 0.4 * 2.0 * math.pi / 76
+    keys = {"run.stop": f"turns {0.4 / 76!r}", "run.samples": "off", "run.balance": False}
+    solution = solve_train(Scene.from_dict(chain()).replace(keys))
+    assert solution.time.size == solution.samples["drive_torque"].size == 0
+    assert solution.status == "finished"
+    until = solve_train(Scene.from_dict(chain()), t_end=solution.reached, samples=2)
+    assert until.samples["shaft_angle"][2, -1] == pytest.approx(turn, rel=1e-9, abs=0.0)
+    assert np.isnan([solution.energy[name] for name in ENERGIES]).all()
+    assert np.isnan([solution.shaft_totals[name] for name in WORKS_OF_SHAFTS]).all()
+    assert np.isnan([solution.mesh_totals[name] for name in WORKS_OF_MESHES]).all()
+    short = solve_train(Scene.from_dict(chain()).replace({"run.largest_step": 2e-9}), t_end=1e-6, samples=2)
+    assert short.statistics.steps >= 500
