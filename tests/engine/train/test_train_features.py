@@ -53,19 +53,19 @@ FEATURES = {
     "maugis": {"contact.asperity": "maugis", **ADHERING},
     "attraction": {"surface.hamaker": 1e-19},
     "independent coatings": {"contact.asperity": "jkr", **ADHERING, "coating.pairing": "independent"},
-    "coating by place": {"contact.asperity": "jkr", **ADHERING, "coating.pinion_table": TABLE},
+    "coating by place": {"contact.asperity": "jkr", **ADHERING, "meshes.first.coating.pinion_table": TABLE},
     "radius force": {"mesh.radius_force": True},
     "static error": {"mesh.static_error": [{"order": 3, "amplitude": "5 nm", "phase": 0.5}]},
     "runout": {
-        "mesh.pinion_runout": {"eccentricity": "20 nm", "phase": 0.4},
-        "mesh.gear_runout": {"eccentricity": "30 nm", "phase": 1.4},
+        "mesh.pinion_runout": {"amplitude": "20 nm", "phase": 0.4},
+        "mesh.gear_runout": {"amplitude": "30 nm", "phase": 1.4},
     },
     "pitch errors": {"mesh.pitch_error_rms": "1 nm", "mesh.pitch_error_seed": 3},
     "held speed": {"drive.torque": 0.0, "drive.speed": 3500.0, "drive.speed_gain": 2e-14},
     "schedule": {"drive.schedule": [[0.0, 0.0], [1e-5, 2e-12], [3e-5, -2e-12]]},
     "harmonics": {"drive.harmonic": [{"amplitude": 2e-12, "frequency": "60 kHz"}]},
     "own law": {"drive.torque": 0.0, "drive.law": LAW},
-    "own law of the load": {"load.law": LAW},
+    "own law of the load": {"load.law": {**LAW, "parameters": [3e-12]}},
 }
 
 
@@ -104,7 +104,8 @@ def test_a_mesh_moves_as_the_pair_does(feature):
     np.testing.assert_allclose(
         train.samples["transmission_error"][0], pair.samples["transmission_error"], rtol=1e-7
     )
-    np.testing.assert_array_equal(train.samples["shaft_speed"][2], 940.0)
+    last = train.samples["shaft_speed"][2]
+    np.testing.assert_array_equal(last, last[0])
     assert_closes(train)
 
 
@@ -116,7 +117,7 @@ def test_balance_of_both_meshes_closes(feature):
 @pytest.mark.parametrize("feature", ["maugis", "held speed", "own law"])
 def test_the_other_driver_gives_the_same(feature):
     scene = changed(chain(hubs=0.1), feature).replace({"run.rtol": 1e-8})
-    native, portable = (solve_train(scene, t_end=4e-6, samples=3, backend=b) for b in ("native", "sksundae"))
+    native, portable = (solve_train(scene, t_end=2e-6, samples=3, backend=b) for b in ("native", "sksundae"))
     np.testing.assert_allclose(portable.samples["shaft_speed"], native.samples["shaft_speed"], rtol=1e-7)
     np.testing.assert_allclose(portable.samples["mesh_force"], native.samples["mesh_force"], rtol=1e-6)
     assert_closes(portable)
@@ -180,16 +181,42 @@ def test_teeth_are_the_same_where_pitches_are_taken_out():
 # -- properties ------------------------------------------------------------------------------------------------------
 
 
+def rhombus(standing_back, phase):
+    """Input and output alike and equal idlers, at an angle by which the pairs of both are half a pitch apart."""
+    theta = 33.0 * math.pi / 120.0
+    tables = split((theta, theta))
+    for name, teeth in (("input", 20), ("upper", 40), ("lower", 40), ("output", 20)):
+        tables["shafts"][name] = {"teeth": teeth, "inertia": 1.2e-20 if teeth == 20 else 1.9e-19}
+    tables["meshes"]["one"]["phase"] = phase
+    tables["meshes"][standing_back]["offset"] = "3 nm"
+    return tables
+
+
 def test_a_wheel_that_stands_back_on_the_other_side_swaps_the_idlers():
-    """Up to the phase: shares of a static split path differ by 4e-5 in the mean over a pitch, and by its ringing."""
+    """At 1e-10, to 1e-7 of the speeds; phases that are swapped with the idlers make the mirror image exact."""
+    first, second = (
+        solve_train(Scene.from_dict(rhombus(*way)), t_end=60e-6, samples=7, rtol=1e-10).samples
+        for way in (("two", 0.3), ("one", 0.8))
+    )
+    for name, order in (("shaft_speed", [0, 2, 1, 3]), ("mesh_force", [1, 0, 3, 2])):
+        largest = np.abs(first[name]).max()
+        np.testing.assert_allclose(first[name], second[name][order], rtol=0.0, atol=1e-7 * largest)
+    one, two = first["mesh_force"][:2].mean(axis=1)
+    assert one > 2.0 * two
+
+
+def test_a_wheel_that_stands_back_in_a_reduction_does_so_but_for_the_phase():
+    """Mean shares over four pitches of the load's gear differ by 7e-4, by 4e-5 at rest."""
     other = split()
     other["meshes"]["one"]["offset"] = "3 nm"
-    first, second = (
-        solve_train(Scene.from_dict(tables), t_end=300e-6, samples=3001).samples["mesh_force"].mean(axis=1)
-        for tables in (offset(), other)
-    )
-    np.testing.assert_allclose(first, second[[1, 0, 3, 2]], rtol=0.02)
-    assert first[0] > 2.0 * first[1]
+    shares = []
+    for tables in (offset(), other):
+        samples = solve_train(Scene.from_dict(tables), t_end=500e-6, samples=5001).samples
+        turned = samples["shaft_angle"][3] * 76 / (2.0 * math.pi)
+        forces = samples["mesh_force"][:, (turned >= 2.0) & (turned < 6.0)].mean(axis=1)
+        shares.append(forces / forces[:2].sum())
+    np.testing.assert_allclose(shares[0], shares[1][[1, 0, 3, 2]], rtol=0.0, atol=2e-3)
+    assert shares[0][0] > 0.7
 
 
 # -- keys of the run -------------------------------------------------------------------------------------------------
