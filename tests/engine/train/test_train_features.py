@@ -18,6 +18,7 @@ import gearidae as gd
 from gearidae.engine import solve
 from gearidae.engine.train import solve_train
 from gearidae.engine.train.build import make_train
+from gearidae.engine.train.motion import torque_slopes
 from gearidae.engine.train.solve import follow_train
 from gearidae.records import EventKind
 from gearidae.records.train_results import ENERGIES, WORKS_OF_MESHES, WORKS_OF_SHAFTS
@@ -64,6 +65,10 @@ FEATURES = {
     "held speed": {"drive.torque": 0.0, "drive.speed": 3500.0, "drive.speed_gain": 2e-14},
     "schedule": {"drive.schedule": [[0.0, 0.0], [1e-5, 2e-12], [3e-5, -2e-12]]},
     "harmonics": {"drive.harmonic": [{"amplitude": 2e-12, "frequency": "60 kHz"}]},
+    "schedules of both": {
+        "drive.schedule": [[0.0, 0.0], [1e-5, 2e-12], [3e-5, -2e-12]],
+        "load.schedule": [[0.0, 0.0], [1e-5, 3e-12], [2e-5, 0.0]],
+    },
     "own law": {"drive.torque": 0.0, "drive.law": LAW},
     "own law of the load": {"load.law": {**LAW, "parameters": [3e-12]}},
 }
@@ -74,16 +79,17 @@ def changed(tables, feature):
 
 
 @cache
-def first_alone(feature, backend="auto"):
-    return solve_train(changed(idle(), feature), t_end=50e-6, samples=6, backend=backend)
+def first_alone(feature):
+    return solve_train(changed(idle(), feature), t_end=50e-6, samples=6)
 
 
+@cache
 def as_pair(feature):
-    """The first mesh with its drive and load, as a scene of a pair."""
+    """The first mesh with its drive and load, run as a pair."""
     scene = changed(idle(), feature)
     drive, load = ({**scene.to_dict().get(table, {})} for table in ("drive", "load"))
     load.pop("shaft")
-    return scene.pair("first").replace({"drive": drive, "load": load})
+    return solve(scene.pair("first").replace({"drive": drive, "load": load}), t_end=50e-6, samples=6)
 
 
 def assert_closes(solution):
@@ -94,7 +100,7 @@ def assert_closes(solution):
 
 @pytest.mark.parametrize("feature", FEATURES)
 def test_a_mesh_moves_as_the_pair_does(feature):
-    train, pair = first_alone(feature), solve(as_pair(feature), t_end=50e-6, samples=6)
+    train, pair = first_alone(feature), as_pair(feature)
     for i, name in enumerate(("pinion_speed", "gear_speed")):
         np.testing.assert_allclose(train.samples["shaft_speed"][i], pair.samples[name], rtol=SPEED)
     largest = np.abs(pair.samples["mesh_force"]).max()
@@ -110,8 +116,47 @@ def test_a_mesh_moves_as_the_pair_does(feature):
 
 
 @pytest.mark.parametrize("feature", FEATURES)
+def test_a_mesh_has_the_energies_and_extremes_of_the_pair(feature):
+    """Those of the pair come from a quadrature of its own, of fourth order, most visible in the radius' work."""
+    train, pair = first_alone(feature), as_pair(feature)
+    own, balance, energy = train.mesh_totals, pair.balance, train.energy
+    for name in ("adhesion_loss", "damping_loss", "film_loss"):
+        assert own[name][0] == pytest.approx(balance[name], rel=1e-6, abs=0.0), name
+        assert own[name][1] == 0.0
+    expected = {
+        "drive_work": balance.drive_work,
+        "load_work": balance.drag_loss + balance.dry_loss,
+        "kinetic_change": balance.kinetic_change,
+        "stored_change": balance.stored_change,
+    }
+    for name, value in expected.items():
+        assert energy[name] == pytest.approx(value, rel=2e-7, abs=0.0), name
+    assert energy["radius_work"] == pytest.approx(balance.radius_work, rel=1e-4, abs=0.0)
+    for name in ("largest_mesh_force", "smallest_mesh_force", "smallest_separation"):
+        assert own[name][0] == pytest.approx(pair.extremes[name], rel=FORCE, abs=0.0), name
+    assert own["mesh_exits"][0] == pair.extremes.mesh_exits
+
+
+@pytest.mark.parametrize("feature", FEATURES)
 def test_balance_of_both_meshes_closes(feature):
     assert_closes(solve_train(changed(chain(hubs=0.1), feature), t_end=60e-6, samples=2))
+
+
+def test_bound_of_the_balance_knows_torques_that_depend_on_the_speed():
+    """Errors of the speed, held by a gain, are work: over the run, the gain times their unit times the top speed."""
+    bounds, slopes = [], []
+    for gain in (1e-15, 1e-12):
+        scene = changed(chain(), "held speed").replace({"drive.speed_gain": gain, "run.duration": 1e-5})
+        problem = make_train(scene.replace({"run.samples": 2}))
+        bounds.append(follow_train(problem, "native").energy["residual_bound"])
+        slopes.append(torque_slopes(problem.model, 1e-5, problem.model.y))
+    assert slopes == [pytest.approx((1e-15, 0.0), rel=1e-6), pytest.approx((1e-12, 0.0), rel=1e-6)]
+    train = problem.model.train[0]
+    unit = 1.0 / (problem.model.weights[len(problem.model.shafts) + train.drive] * 1e-9)
+    inertia, ratio = problem.model.shafts["inertia"], problem.model.shafts["ratio"]
+    top = 4.0 * math.sqrt(2.0 * train.peak_kinetic / (inertia * ratio**2).sum())
+    work = 0.1 * 1e-9 * 1e-12 * unit * top * 1e-5
+    assert bounds[1] > work > 0.1 * bounds[1]
 
 
 @pytest.mark.parametrize("feature", ["maugis", "held speed", "own law"])
@@ -159,7 +204,10 @@ def test_a_long_run_keeps_its_counts():
 def test_teeth_are_the_same_where_pitches_are_taken_out():
     """Errors of single teeth, runout, coverage by place and histories, against a run that takes none out."""
     scene = fast(
-        **FEATURES["coating by place"], **FEATURES["runout"], **FEATURES["pitch errors"], **{"run.rtol": 1e-10}
+        **FEATURES["coating by place"],
+        **FEATURES["runout"],
+        **FEATURES["pitch errors"],
+        **{"run.rtol": 1e-10},
     ).replace({"run.duration": 1.5e-4, "run.samples": 4})
     ends = []
     for taken in (True, False):

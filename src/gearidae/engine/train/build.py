@@ -94,8 +94,16 @@ def _refuse(scene: TrainScene, train: Train) -> None:
         (bool(drive.pin_friction_rise), "drive.pin_friction_rise", "friction of its joints does not age"),
         (run.stop == "sticks", "run.stop", "each of its shafts may stick"),
         (run.impacts, "run.impacts", "impacts are a table of one mesh"),
-        (run.method != "auto", "run.method", "a train has a formula of its own; another driver may be chosen"),
-        (run.samples == "ringing", "run.samples", "how its contacts ring is not known before; give a number or a rate"),
+        (
+            run.method != "auto",
+            "run.method",
+            "a train has a formula of its own; another driver may be chosen",
+        ),
+        (
+            run.samples == "ringing",
+            "run.samples",
+            "how its contacts ring is not known before; give a number or a rate",
+        ),
         (bool(run.checkpoints), "run.checkpoints", "a train keeps no checkpoints yet"),
     )
     for there, key, reason in refused:
