@@ -30,7 +30,7 @@ TABLE = [[0.9, 0.7, 0.4, 0.6], [0.5, 0.8, 0.6, 1.0]] * 9 + [[0.3, 0.9, 0.5, 0.7]
 """Coverage of the 19 teeth of the driver at four places."""
 
 
-def bang(t, angle, speed, p):
+def half_in_sectors(t, angle, speed, p):
     """Torque that is halved within sectors of the driver's angle."""
     return p[0] if math.cos(200.0 * angle) > 0.3 else 0.5 * p[0]
 
@@ -39,11 +39,21 @@ def sector_ends(t, angle, speed, p):
     return math.cos(200.0 * angle) - 0.3
 
 
+def back_and_forth(t, angle, speed, p):
+    return p[0] if speed < p[1] else -p[0]
+
+
+def wanted_speed(t, angle, speed, p):
+    return speed - p[1]
+
+
 @pytest.fixture(scope="module", autouse=True)
 def _registered():
-    gd.register_torque("sectors_of_a_train", parameters=1, switch=sector_ends)(bang)
+    gd.register_torque("sectors_of_a_train", parameters=1, switch=sector_ends)(half_in_sectors)
+    gd.register_torque("held_by_jumps", parameters=2, switch=wanted_speed)(back_and_forth)
     yield
     gd.unregister_torque("sectors_of_a_train")
+    gd.unregister_torque("held_by_jumps")
 
 
 LAW = {"name": "sectors_of_a_train", "parameters": [1.4e-11]}
@@ -166,6 +176,17 @@ def test_the_other_driver_gives_the_same(feature):
     np.testing.assert_allclose(portable.samples["shaft_speed"], native.samples["shaft_speed"], rtol=1e-7)
     np.testing.assert_allclose(portable.samples["mesh_force"], native.samples["mesh_force"], rtol=1e-6)
     assert_closes(portable)
+
+
+@pytest.mark.parametrize("backend", ["native", "sksundae"])
+def test_a_law_that_chatters_ends_the_run(backend):
+    """A torque that jumps at a speed holds it by jumps without end: the run says so after 300 of them."""
+    law = {"name": "held_by_jumps", "parameters": [1.4e-11, 3700.0]}
+    scene = Scene.from_dict(chain(drive={"law": law}))
+    solution = solve_train(scene, t_end=50e-6, samples=2, backend=backend)
+    assert solution.status == "law_chatter"
+    assert solution.reached < 50e-6
+    assert solution.statistics.steps < 20_000
 
 
 # -- long runs -------------------------------------------------------------------------------------------------------

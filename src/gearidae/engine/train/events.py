@@ -15,10 +15,11 @@ from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import TRAIN
 from gearidae.engine.events.cutoff import begin_within, cutoff_guard, note_within, watches_cutoff
 from gearidae.engine.events.histories import accept
-from gearidae.engine.events.law_switches import law_guard, set_law_sides
+from gearidae.engine.events.law_switches import law_guard, laws_chatter, note_law_jump, set_law_sides
 from gearidae.engine.events.mesh_marks import cross_mark, crossed_mark, mark_guard, relief_step
 from gearidae.engine.events.pair_events import find_event, pair_guard, take_event
 from gearidae.engine.events.stops import next_stop, pass_knot
+from gearidae.engine.integrate.driver import LAW_CHATTER
 from gearidae.engine.model.addresses import model_at
 from gearidae.engine.model.state import COAST, DRIVE, EMPTY, Model, W
 from gearidae.engine.observers import adhesion_loss
@@ -128,6 +129,8 @@ def accept_all(tm: TrainModel, t: float, y: Floats) -> int:
             q = m.work.quadrature
             q.gear_speed, q.gear_acceleration = tm.own[W], tm.rates[12, n + mesh.b] * unit
             adhesion_loss.step(m, time, tm.own, q.gear_acceleration)
+        if m.scene.law_switches != 0 and laws_chatter(m):
+            tm.train[0].error = LAW_CHATTER
         flying += in_flight(m)
         beyond |= m.state.bound_exceeded != 0
     return -1 if beyond else flying
@@ -151,8 +154,8 @@ def _switch_mesh(tm: TrainModel, k: int, m: Model, t: float, y: Floats, out: Tra
             if event.turns and tm.train[0].balance != 0:
                 adhesion_loss.event(m, own, event.coast, event.pair, event.k, event.gap)
             count = take_event(m, time, own, event, few, count)
-    if m.scene.law_switches != 0:
-        set_law_sides(m, time, own)
+    if m.scene.law_switches != 0 and set_law_sides(m, time, own):
+        note_law_jump(m)
     if watches_cutoff(m):
         note_within(m, own)
     if crossed and tm.train[0].balance != 0:
