@@ -5,14 +5,14 @@ from __future__ import annotations
 import xarray as xr
 from matplotlib.figure import Figure, SubFigure
 
-from gearidae.archive.select import is_roller, scene_of, swept_dims
+from gearidae.archive.select import is_roller, is_train, scene_of, swept_dims
 from gearidae.archive.specimen import specimen_label
-from gearidae.archive.train.variables import is_train
 from gearidae.drawing.picture import new_picture
 from gearidae.drawing.style import runs_of
 from gearidae.plot.gears import gear_speed
 from gearidae.plot.roller import roller_force, roller_gap
 from gearidae.plot.torque import contact_torque
+from gearidae.plot.work import work
 from gearidae.records import sampled_columns
 from gearidae.studies.declared import studies
 
@@ -41,6 +41,8 @@ def usual_pictures(ds: xr.Dataset, kind: str) -> dict[str, str]:
 def overview(ds: xr.Dataset, *, figure: Figure | SubFigure | None = None) -> Figure | SubFigure:
     """Draw a dataset: gear speed and contact torque of a gear pair, force and gap of a roller.
 
+    Of a train the speed of the judged shaft, and where the work of the drive goes.
+
     Parameters
     ----------
     ds : xarray.Dataset
@@ -57,6 +59,8 @@ def overview(ds: xr.Dataset, *, figure: Figure | SubFigure | None = None) -> Fig
     SceneError
         If the dataset has no samples.
     """
+    if is_train(ds):
+        return _train_overview(ds, figure)
     above, below = (roller_force, roller_gap) if is_roller(ds) else (gear_speed, contact_torque)
     strips = 1 if is_roller(ds) else len(runs_of(ds, "gear_contact_torque"))
     lower = 2.8 if strips == 1 else 0.8 + 0.62 * strips
@@ -69,6 +73,16 @@ def overview(ds: xr.Dataset, *, figure: Figure | SubFigure | None = None) -> Fig
     top.tick_params(labelbottom=False)
     if is_roller(ds) and (repeated := bottom.get_legend()) is not None:
         repeated.remove()
+    figure.suptitle(_title(ds), x=0.01, ha="left", fontsize="large")
+    return figure
+
+
+def _train_overview(ds: xr.Dataset, figure: Figure | SubFigure | None) -> Figure | SubFigure:
+    figure = figure or new_picture((7.6, 6.4), panels=True, layout="constrained")
+    top, bottom = figure.subplots(2, 1)
+    gear_speed(ds, top)
+    top.set_ylabel(f"speed of {ds.attrs['judged_shaft']} (rad/s)")
+    work(ds, bottom)
     figure.suptitle(_title(ds), x=0.01, ha="left", fontsize="large")
     return figure
 

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from typing import Final
 
 import numpy as np
-import xarray as xr
 
 from gearidae.archive.variables import EXTREMES, SAMPLES, Variable
 
@@ -145,8 +144,3 @@ ALL: Final[Mapping[str, Variable]] = {
     REST_LIST.name: REST_LIST,
 }
 """By their names."""
-
-
-def is_train(ds: xr.Dataset) -> bool:
-    """Whether a dataset is of a train of several meshes."""
-    return "shaft" in ds.dims and "mesh" in ds.dims
