@@ -16,7 +16,7 @@ from gearidae.scene import Scene
 
 DRAWN = {
     *("cycle", "gap", "gear_speed", "orders", "overview", "power_spectrum", "spectrogram"),
-    *("transmission_error", "work"),
+    *("impact_spectrum", "transmission_error", "work"),
 }
 NOT_OF_TRAINS = {"contact_torque", "impact_forces", "teeth", "tooth_errors"}
 NO_PICTURES = {"style", "write"}

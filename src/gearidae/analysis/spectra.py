@@ -248,7 +248,7 @@ def _contact_frequency(scene: Scene, run: xr.Dataset) -> float:
     if is_long_train(scene):
         if not is_train(run) or "mesh_force" not in run:
             return 0.0
-        forces = np.nan_to_num(np.abs(run["mesh_force"]).mean("time").values)
+        forces = np.nan_to_num(abs(run["mesh_force"]).mean("time").values)
         return max(natural_frequencies(scene, forces), default=0.0)
     assert scene.gears is not None
     contact, geometry = pair_contact(scene), scene.geometry
