@@ -294,10 +294,15 @@ def single_run(ds: xr.Dataset) -> xr.Dataset:
     single = ds.drop_vars([name for name in gone if name in ds.variables])
     single["sam_fraction"] = ((), scene.coating.sam_fraction, SAM_FRACTION.attributes)
     of_sweep = ("history", "source", "date_created", "product_version", "backend", "method", "keep")
+    if "held_by" in single:  # of a train; a single run has it where something holds
+        held = single["held_by"].values.item()
+        numbers |= {"held_by": held} if held else {}
+        single = single.drop_vars("held_by")
+    of_train = ("judged_shaft", "judged_mesh", "drive_shaft")
     single.attrs = {
         **provenance(scene, ""),
         **{name: ds.attrs[name] for name in of_sweep if name in ds.attrs},
         **numbers,
-        **surface_regimes(scene),
+        **({name: ds.attrs[name] for name in of_train} if is_train(ds) else surface_regimes(scene)),
     }
     return single

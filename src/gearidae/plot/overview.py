@@ -31,7 +31,7 @@ def usual_pictures(ds: xr.Dataset, kind: str) -> dict[str, str]:
         Functions of `gearidae.plot` and their captions, the one that says most first.
     """
     if kind == "runs" and is_train(ds):
-        return {"work": "Where the work of the drive goes"}
+        return {"overview": ""} if swept_dims(ds) else {"work": "Where the work of the drive goes"}
     if kind == "runs":
         sampled = any(name in ds for name in sampled_columns(roller=is_roller(ds)))
         return {"overview" if sampled or not swept_dims(ds) else "outcome": ""}
@@ -41,7 +41,7 @@ def usual_pictures(ds: xr.Dataset, kind: str) -> dict[str, str]:
 def overview(ds: xr.Dataset, *, figure: Figure | SubFigure | None = None) -> Figure | SubFigure:
     """Draw a dataset: gear speed and contact torque of a gear pair, force and gap of a roller.
 
-    Of a train the speed of the judged shaft, and where the work of the drive goes.
+    Of a train the speed of the judged shaft, and of a single run where the work of the drive goes.
 
     Parameters
     ----------
@@ -78,11 +78,13 @@ def overview(ds: xr.Dataset, *, figure: Figure | SubFigure | None = None) -> Fig
 
 
 def _train_overview(ds: xr.Dataset, figure: Figure | SubFigure | None) -> Figure | SubFigure:
-    figure = figure or new_picture((7.6, 6.4), panels=True, layout="constrained")
-    top, bottom = figure.subplots(2, 1)
+    single = not swept_dims(ds)
+    figure = figure or new_picture((7.6, 6.4 if single else 3.6), panels=True, layout="constrained")
+    top, *bottom = figure.subplots(1 + single, 1, squeeze=False)[:, 0]
     gear_speed(ds, top)
     top.set_ylabel(f"speed of {ds.attrs['judged_shaft']} (rad/s)")
-    work(ds, bottom)
+    for ax in bottom:
+        work(ds, ax)
     figure.suptitle(_title(ds), x=0.01, ha="left", fontsize="large")
     return figure
 

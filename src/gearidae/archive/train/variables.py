@@ -133,6 +133,9 @@ EVENT_PLACES: Final[Mapping[str, Variable]] = {
 REST_LIST: Final = Variable(
     "rest_list", (), "1", "intervals at rest as JSON: shaft, begin and end in seconds", np.object_
 )
+HELD_BY: Final = Variable("held_by", (), "1", "what holds the judged shaft, by names", np.str_)
+ATTRIBUTES: Final = ("judged_shaft", "judged_mesh", "drive_shaft")
+"""Attributes that all runs of a sweep have in common."""
 ALL: Final[Mapping[str, Variable]] = {
     **COORDINATES,
     **TRAIN_SAMPLES,
@@ -142,5 +145,6 @@ ALL: Final[Mapping[str, Variable]] = {
     **ENERGY,
     **EVENT_PLACES,
     REST_LIST.name: REST_LIST,
+    HELD_BY.name: HELD_BY,
 }
 """By their names."""
