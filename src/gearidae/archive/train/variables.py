@@ -134,6 +134,7 @@ REST_LIST: Final = Variable(
     "rest_list", (), "1", "intervals at rest as JSON: shaft, begin and end in seconds", np.object_
 )
 HELD_BY: Final = Variable("held_by", (), "1", "what holds the judged shaft, by names", np.str_)
+"""Of each run of a sweep; of a single run it is an attribute."""
 ATTRIBUTES: Final = ("judged_shaft", "judged_mesh", "drive_shaft")
 """Attributes that all runs of a sweep have in common."""
 ALL: Final[Mapping[str, Variable]] = {
@@ -145,6 +146,5 @@ ALL: Final[Mapping[str, Variable]] = {
     **ENERGY,
     **EVENT_PLACES,
     REST_LIST.name: REST_LIST,
-    HELD_BY.name: HELD_BY,
 }
 """By their names."""
