@@ -79,7 +79,7 @@ def test_an_aliased_record_names_the_highest_mode_of_the_train(run):
     assert 0.5 * 6.053399e6 < 2.0 * math.pi * said < 2.0 * 6.053399e6
 
 
-def test_a_train_is_resampled_assessed_as_a_signal_and_balanced(run):
+def test_a_train_is_resampled_and_balanced(run):
     turned = gd.analysis.resample(run)
     assert {"gear_speed", "pinion_speed", "time"} <= {*turned.data_vars}
     balance = run.gearidae.energy_balance

@@ -95,6 +95,7 @@ def sweep(
         part (``sam_fraction``). Events lie on one flat ``event`` dimension, labelled by
         ``event_<dimension>``. A run that could not go on says so in its ``status`` and is NaN from there on;
         the others are not affected.
+        Of trains ``shaft`` and ``mesh`` stand between the swept keys and ``time``; `keep` and `resume` are refused.
 
     Raises
     ------
