@@ -65,8 +65,8 @@ def test_numbers_for_programs(case, capfd):
     )
 
 
-def test_a_sweep_of_several_meshes_is_bad_input(case, capfd, tmp_path):
-    over = ["--over", "meshes.second.coating.sam_fraction=1,0.5"]
-    assert main(["sweep", case(chain()), *over, "-o", str(tmp_path / "out.nc")]) == 2
-    assert "trains of several are run by simulate alone" in capfd.readouterr().err
+def test_a_threshold_of_several_meshes_is_bad_input(case, capfd, tmp_path):
+    over = ["--over", "meshes.second.coating.sam_fraction=0,1"]
+    assert main(["threshold", case(chain()), *over, "-o", str(tmp_path / "out.nc")]) == 2
+    assert "trains of several are run by simulate and sweep alone" in capfd.readouterr().err
     assert not (tmp_path / "out.nc").exists()

@@ -9,12 +9,11 @@ import pytest
 from tests.reference.trains import HUBS, chain, compound, split
 
 import gearidae as gd
+from gearidae.mesh.train_modes import levers, natural_frequencies
 from gearidae.runs import train_statics
 from gearidae.runs.train_statics import (
     hub_loads,
-    levers,
     mesh_forces,
-    natural_frequencies,
     overlapping,
     ratios,
     resisting_torques,

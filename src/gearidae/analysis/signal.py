@@ -11,6 +11,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from gearidae.archive.select import judged_teeth
+from gearidae.archive.train import judged_view
 from gearidae.archive.variables import SAMPLES
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
@@ -119,7 +121,8 @@ def signals(
     ----------
     data : Dataset or DataArray
         From `simulate`, `sweep` or `open_archive`, a part of one, or measured samples along ``time`` [s]. Other
-        dimensions are runs. Units are read from the attribute ``units`` and are SI where there is none.
+        dimensions are runs; of a train the mesh that drives the judged shaft is taken. Units are read from the
+        attribute ``units`` and are SI where there is none.
     variable : str, optional
         Which variable of a Dataset.
     gear_teeth : int, optional
@@ -132,6 +135,8 @@ def signals(
     """
     if not isinstance(data, xr.Dataset | xr.DataArray):
         raise SceneError("signal", type(data).__name__, "must be an xarray Dataset or DataArray")
+    if isinstance(data, xr.Dataset):
+        data = judged_view(data)
     array = data if isinstance(data, xr.DataArray) else data.get(variable)
     if array is None:
         known = ", ".join(str(name) for name in data if "time" in data[name].dims)
@@ -284,7 +289,7 @@ def _until_end(values: Floats, name: str, time: Floats, late: int) -> Floats:
 def _gear_teeth(attrs: Mapping[Any, Any]) -> int | None:
     """Teeth of the gear from the scene among the attributes."""
     try:
-        return int(json.loads(attrs["scene"])["gears"]["gear_teeth"])
+        return judged_teeth(json.loads(attrs["scene"])).gear_teeth
     except (KeyError, TypeError, ValueError):
         return None
 

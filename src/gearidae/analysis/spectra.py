@@ -22,11 +22,12 @@ import xarray as xr
 from gearidae.analysis.impacts import WIDTH, windows_of
 from gearidae.analysis.ringing import own_frequency
 from gearidae.analysis.signal import FEWEST_SAMPLES, Batch, signals, stack
-from gearidae.archive.select import is_roller, run_scene, runs
+from gearidae.archive.select import is_roller, is_train, run_scene, runs
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.mesh.pair_contact import pair_contact
-from gearidae.scene import Scene
+from gearidae.mesh.train_modes import natural_frequencies
+from gearidae.scene import Scene, is_long_train
 from gearidae.scene.quantity import whole
 
 _MOST_PADDING = 64
@@ -240,7 +241,15 @@ def warn_of_aliasing(data: xr.Dataset | xr.DataArray, batch: Batch) -> None:
 
 
 def _contact_frequency(scene: Scene, run: xr.Dataset) -> float:
-    """Frequency of one pair about the gap at which it carries the mean drive torque [Hz]; 0 if it carries none."""
+    """Frequency of one pair about the gap at which it carries the mean drive torque [Hz]; 0 if it carries none.
+
+    Of a train the highest of all, with one pair in each mesh at the gap at which it carries the mesh's mean force.
+    """
+    if is_long_train(scene):
+        if not is_train(run) or "mesh_force" not in run:
+            return 0.0
+        forces = np.nan_to_num(abs(run["mesh_force"]).mean("time").values)
+        return max(natural_frequencies(scene, forces), default=0.0)
     assert scene.gears is not None
     contact, geometry = pair_contact(scene), scene.geometry
     pinion, gear = geometry.base_radius_pinion, geometry.base_radius_gear

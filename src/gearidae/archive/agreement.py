@@ -14,7 +14,8 @@ from gearidae.archive.dataset import dimension_names
 from gearidae.archive.end_state import END_DIGEST, end_state_of, fingerprint
 from gearidae.archive.provenance import SCENE_DIGEST, digest_of
 from gearidae.archive.row_variables import DIMS
-from gearidae.archive.train.variables import ALL, is_train
+from gearidae.archive.select import is_train
+from gearidae.archive.train.variables import ALL
 from gearidae.archive.variables import ROLLER_EXTREMES, by_name
 from gearidae.errors import SceneError
 from gearidae.scene import Scene

@@ -15,7 +15,7 @@ from gearidae.archive.dataset import dimension_names
 from gearidae.archive.exposures import exposure_coordinates
 from gearidae.archive.output_selection import kept_in
 from gearidae.archive.row_variables import rows_from
-from gearidae.archive.select import run_value, runs, scene_of, single_run, swept_dims
+from gearidae.archive.select import is_train, run_value, runs, scene_of, single_run, swept_dims
 from gearidae.archive.stack import Axis, stack
 from gearidae.archive.variables import (
     ENERGY_TOTALS,
@@ -68,6 +68,11 @@ def concat(datasets: Iterable[xr.Dataset] | Mapping[str, xr.Dataset], dim: str) 
         if not isinstance(part, xr.Dataset):
             raise SceneError(part_name(number), type(part).__name__, "must be a dataset")
         scene_of(part)
+        if is_train(part):
+            allowed = (
+                "cannot be joined: they are of trains of several meshes, which gearidae.sweep runs into one"
+            )
+            raise SceneError(part_name(number), "(train)", allowed)
     if dim == "time":
         return chained(parts)
     if isinstance(datasets, Mapping) and dim != "name":

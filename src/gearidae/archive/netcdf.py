@@ -31,9 +31,10 @@ from gearidae.archive.output_selection import kept_in
 from gearidae.archive.pieces import reached
 from gearidae.archive.provenance import SCHEMA_VERSION
 from gearidae.archive.row_variables import kinds_in, needed
+from gearidae.archive.select import is_train
 from gearidae.archive.target import as_path, whole_file
 from gearidae.archive.time_index import LARGEST_IN_MEMORY, in_memory, with_times
-from gearidae.archive.train.variables import COORDINATES, MESH_TOTALS, SHAFT_TOTALS, TRAIN_SAMPLES, is_train
+from gearidae.archive.train.variables import COORDINATES, MESH_TOTALS, SHAFT_TOTALS, TRAIN_SAMPLES
 from gearidae.archive.unfinished import RunJournal
 from gearidae.archive.variables import ENERGY_BALANCE, OF_SWEPT_RUN
 from gearidae.errors import SceneError

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gearidae.archive.variables import PLACES, POPULATION_EVENTS, ROW_VARIABLES, SAM_FRACTION
+from gearidae.archive.variables import PLACES, POPULATION_EVENTS, ROW_VARIABLES, SAM_FRACTION, TRAIN_LABELS
 from gearidae.errors import SceneError
 from gearidae.records import ROWS, Flank, Rows, Solution
 from gearidae.scene import Scene
@@ -19,7 +19,7 @@ from gearidae.scene.sampled import rows_of
 
 DIMS = tuple(kind.dim for kind in ROWS)
 """Dimensions of rows."""
-LABELS = ("time", *DIMS, *PLACES)
+LABELS = ("time", *DIMS, *PLACES, *TRAIN_LABELS)
 """Coordinates that label no runs."""
 
 

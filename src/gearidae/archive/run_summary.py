@@ -17,9 +17,8 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gearidae.archive.pieces import PIECE
-from gearidae.archive.select import is_roller, scene_of
+from gearidae.archive.select import is_roller, is_train, scene_of
 from gearidae.archive.totals import balance_of, extremes_of
-from gearidae.archive.train.variables import is_train
 from gearidae.archive.variables import ENERGY_BALANCE
 from gearidae.arrays import Floats
 from gearidae.records import EnergyBalance, EventKind, Extremes

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -17,7 +17,8 @@ from gearidae.archive.row_variables import DIMS, LABELS, kinds_in, own_rows, row
 from gearidae.archive.variables import EXTREMES, OF_SWEPT_RUN, RUN, SAM_FRACTION, SAMPLES, run_label
 from gearidae.errors import SceneError
 from gearidae.records import sampled_columns
-from gearidae.scene import GearScene, Scene
+from gearidae.scene import GearScene, Scene, TrainScene
+from gearidae.scene.judged import judged_mesh
 
 
 def scene_of(ds: xr.Dataset) -> dict[str, Any]:
@@ -54,6 +55,62 @@ def scene_of(ds: xr.Dataset) -> dict[str, Any]:
 def is_roller(ds: xr.Dataset) -> bool:
     """Whether a dataset is of a roller scene, else of a gear pair."""
     return scene_of(ds).get("roller") is not None
+
+
+def is_train(ds: xr.Dataset) -> bool:
+    """Whether a dataset is of a train of several meshes."""
+    return "shaft" in ds.dims and "mesh" in ds.dims
+
+
+def refuse_train(ds: xr.Dataset) -> None:
+    """Refuse a run of a train of several meshes where single pairs of teeth, or a contact torque, are looked at.
+
+    Raises
+    ------
+    SceneError
+        Saying what there is of trains.
+    """
+    if is_train(ds):
+        raise SceneError(
+            "dataset",
+            f"of a train ({ds.sizes['mesh']} meshes)",
+            "must be of a pair of gears here: of trains there are speeds, forces of meshes, loads of hubs and works, "
+            "and none of single pairs of teeth; gearidae.simulate(scene.pair(NAME)) runs a stage as a pair",
+        )
+
+
+class JudgedTeeth(NamedTuple):
+    """The pair of gears whose pitch counts, and what the shafts of both are called.
+
+    Attributes
+    ----------
+    pinion, gear : str
+        ``pinion`` and ``gear`` of a pair; of a train names of shafts.
+    pinion_teeth, gear_teeth : int
+    """
+
+    pinion: str
+    gear: str
+    pinion_teeth: int
+    gear_teeth: int
+
+
+def judged_teeth(scene: Mapping[str, Any]) -> JudgedTeeth:
+    """Return the teeth of a scene as plain data: of its pair, of a train in the mesh that drives the judged shaft.
+
+    Raises
+    ------
+    KeyError
+        If the scene has no gears.
+    """
+    if "meshes" not in scene:
+        return JudgedTeeth(
+            "pinion", "gear", int(scene["gears"]["pinion_teeth"]), int(scene["gears"]["gear_teeth"])
+        )
+    whole = TrainScene.from_dict(dict(scene))
+    mesh = whole.train.meshes[judged_mesh(whole)]
+    pinion, gear = (whole.train.shafts[shaft].name for shaft in (mesh.a, mesh.b))
+    return JudgedTeeth(pinion, gear, mesh.geometry.pinion_teeth, mesh.geometry.gear_teeth)
 
 
 def swept_dims(ds: xr.Dataset) -> tuple[str, ...]:
@@ -191,7 +248,13 @@ def motion_samples(run: xr.Dataset) -> int:
     ----------
     run : xarray.Dataset
         One run of a gear pair.
+
+    Raises
+    ------
+    SceneError
+        If it is one of a train.
     """
+    refuse_train(run)
     samples = reached(run["transmission_error"])
     if samples and not np.isfinite(run["transmission_error"].variable[0].values):
         return 0
@@ -231,10 +294,15 @@ def single_run(ds: xr.Dataset) -> xr.Dataset:
     single = ds.drop_vars([name for name in gone if name in ds.variables])
     single = single.assign_coords(run_label(scene))
     of_sweep = ("history", "source", "date_created", "product_version", "backend", "method", "keep")
+    if "held_by" in single:  # of a train; a single run has it where something holds
+        held = single["held_by"].values.item()
+        numbers |= {"held_by": held} if held else {}
+        single = single.drop_vars("held_by")
+    of_train = ("judged_shaft", "judged_mesh", "drive_shaft")
     single.attrs = {
         **provenance(scene, ""),
         **{name: ds.attrs[name] for name in of_sweep if name in ds.attrs},
         **numbers,
-        **surface_regimes(scene),
+        **({name: ds.attrs[name] for name in of_train} if is_train(ds) else surface_regimes(scene)),
     }
     return single

@@ -53,10 +53,23 @@ def stack(
         See `gearidae.sweep`.
     """
     leaders = {leader: axis[leader] for axis in axes for leader in [next(iter(axis))]}
-    ds = combine(base, leaders, scenes, solutions, keep=keep, samples=samples)
+    return with_zipped(combine(base, leaders, scenes, solutions, keep=keep, samples=samples), base, axes)
+
+
+def with_zipped(ds: xr.Dataset, base: Scene, axes: Sequence[Axis]) -> xr.Dataset:
+    """Add the keys that are walked together with those that label the dimensions of a dataset.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Of the runs, with a dimension for the first key of each axis.
+    base, axes
+        As for `stack`.
+    """
     zipped = zipped_keys(axes)
     if not zipped:
         return ds
+    leaders = [next(iter(axis)) for axis in axes]
     names = dimension_names([key for axis in axes for key in axis])
     renamed = {short: names[key] for key, short in dimension_names(leaders).items() if short != names[key]}
     labels = {f"{dim}_{short}": f"{dim}_{name}" for dim in DIMS for short, name in renamed.items()}

@@ -13,9 +13,9 @@ from typing import Any, TypeAlias
 import xarray as xr
 
 from gearidae.archive.run_summary import counted_over, summary_of
+from gearidae.archive.select import is_train
 from gearidae.archive.totals import balance_of, imbalance
 from gearidae.archive.train import work_shares
-from gearidae.archive.train.variables import is_train
 from gearidae.records.energy import LOSSES, TERMS
 from gearidae.scene.prefixes import with_prefix
 

@@ -12,8 +12,7 @@ import pandas as pd
 import xarray as xr
 
 from gearidae.archive.row_variables import own_rows
-from gearidae.archive.select import swept_dims
-from gearidae.archive.train.variables import is_train
+from gearidae.archive.select import is_train, refuse_train, swept_dims
 from gearidae.archive.variables import ROW_VARIABLES, SAM_FRACTION
 from gearidae.errors import SceneError
 from gearidae.records import Impacts, Rows
@@ -114,6 +113,7 @@ def row_table(ds: xr.Dataset, kind: type[Rows]) -> pd.DataFrame:
         If they have not been kept.
     """
     if kind.dim not in ds.dims:
+        refuse_train(ds)
         advice = f"sweep with keep=[..., '{kind.field}']"
         if kind is Impacts:
             advice = "run with run.impacts = true, and if a sweep keeps parts of its runs " + advice

@@ -323,6 +323,10 @@ _PLACES = (
 EXPOSURES: Mapping[str, Variable] = {variable.name: variable for variable in _EXPOSURES}
 PLACES: Mapping[str, Variable] = {variable.name: variable for variable in _PLACES}
 """What the exposures are labelled by."""
+TRAIN_LABELS: Final = (
+    *("shaft", "mesh", "mesh_driver", "mesh_driven", "mesh_ratio", "shaft_sense", "shaft_ratio"),
+)
+"""What runs of trains are labelled by besides."""
 _SUMS = Variable.catalogue((*ENERGY_SUMS, *ENERGY_NOW))
 ENERGY_BALANCE: Mapping[str, Variable] = {
     **{name: variable for name, variable in _SUMS.items() if name not in SLIDING},

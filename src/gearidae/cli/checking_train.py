@@ -9,10 +9,10 @@ import numpy as np
 
 from gearidae.cli.fact import Fact, Facts
 from gearidae.mesh.pair_contact import pair_contact
+from gearidae.mesh.train_modes import natural_frequencies
 from gearidae.runs.train_statics import (
     hub_loads,
     mesh_forces,
-    natural_frequencies,
     overlapping,
     starting_torque,
     steady_speed,

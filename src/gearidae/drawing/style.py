@@ -22,13 +22,14 @@ from numpy.typing import NDArray
 from gearidae.analysis.verdict import START_UP, outcomes
 from gearidae.analysis.verdict.judge import is_scheduled
 from gearidae.archive.pieces import PIECE, Spread, pieces, reached, spread
-from gearidae.archive.select import run_value, runs, scene_of
+from gearidae.archive.select import refuse_train, run_value, runs, scene_of
 from gearidae.archive.value_text import coverage_text
 from gearidae.archive.variables import SAM_FRACTION
 from gearidae.arrays import Floats
 from gearidae.drawing.picking import pick
 from gearidae.drawing.picture import PictureAxes, is_set, new_picture
 from gearidae.errors import SceneError
+from gearidae.records import GEAR_COLUMNS
 from gearidae.scene.prefixes import PREFIXES, with_prefix
 
 # Okabe and Ito's palette, dark colours first: distinguishable for colour-blind readers and, with the line styles,
@@ -131,6 +132,8 @@ def runs_of(ds: xr.Dataset, name: str) -> list[Run]:
     SceneError
         If the dataset lacks the variable or has no samples.
     """
+    if name in GEAR_COLUMNS and name not in ds:
+        refuse_train(ds)
     everything = list(runs(ds)) if name in ds else []
     kept = [number for number, (_, run) in enumerate(everything) if _has_samples(run[name])]
     drawable = len(kept)

@@ -38,8 +38,8 @@ from gearidae.studies.declared import studies
 
 if TYPE_CHECKING:
     from gearidae.plot.animation import animate_teeth as animate_teeth
-    from gearidae.plot.teeth_view import teeth as teeth
     from gearidae.plot.errors_of_teeth import tooth_errors as tooth_errors
+    from gearidae.plot.teeth_view import teeth as teeth
 
 __getattr__, __dir__, __all__ = lazy_names(__name__)
 _of_studies = {

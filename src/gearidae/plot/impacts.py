@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
+from gearidae.archive.select import refuse_train
 from gearidae.arrays import Floats
 from gearidae.drawing.style import legend, line_width, new_axes, runs_of, scale_for, tidy
 from gearidae.errors import SceneError
@@ -36,6 +37,7 @@ def impact_forces(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
         If no impacts have been kept, or none pushes.
     """
     if _FORCE not in ds:
+        refuse_train(ds)
         raise SceneError("run.impacts", "false", "must be true for this picture")
     drawn = runs_of(ds, _FORCE)
     forces = [run.data[_FORCE].values for run in drawn]

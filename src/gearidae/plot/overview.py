@@ -5,9 +5,8 @@ from __future__ import annotations
 import xarray as xr
 from matplotlib.figure import Figure, SubFigure
 
-from gearidae.archive.select import is_roller, scene_of, swept_dims
+from gearidae.archive.select import is_roller, is_train, scene_of, swept_dims
 from gearidae.archive.specimen import specimen_label
-from gearidae.archive.train.variables import is_train
 from gearidae.archive.value_text import coverage_text
 from gearidae.archive.variables import SAM_FRACTION
 from gearidae.drawing.picture import new_picture
@@ -15,6 +14,7 @@ from gearidae.drawing.style import runs_of
 from gearidae.plot.gears import gear_speed
 from gearidae.plot.roller import roller_force, roller_gap
 from gearidae.plot.torque import contact_torque
+from gearidae.plot.work import work
 from gearidae.records import sampled_columns
 from gearidae.studies.declared import studies
 
@@ -33,7 +33,7 @@ def usual_pictures(ds: xr.Dataset, kind: str) -> dict[str, str]:
         Functions of `gearidae.plot` and their captions, the one that says most first.
     """
     if kind == "runs" and is_train(ds):
-        return {"work": "Where the work of the drive goes"}
+        return {"overview": ""} if swept_dims(ds) else {"work": "Where the work of the drive goes"}
     if kind == "runs":
         sampled = any(name in ds for name in sampled_columns(roller=is_roller(ds)))
         return {"overview" if sampled or not swept_dims(ds) else "outcome": ""}
@@ -42,6 +42,8 @@ def usual_pictures(ds: xr.Dataset, kind: str) -> dict[str, str]:
 
 def overview(ds: xr.Dataset, *, figure: Figure | SubFigure | None = None) -> Figure | SubFigure:
     """Draw a dataset: gear speed and contact torque of a gear pair, force and gap of a roller.
+
+    Of a train the speed of the judged shaft, and of a single run where the work of the drive goes.
 
     Parameters
     ----------
@@ -59,6 +61,8 @@ def overview(ds: xr.Dataset, *, figure: Figure | SubFigure | None = None) -> Fig
     SceneError
         If the dataset has no samples.
     """
+    if is_train(ds):
+        return _train_overview(ds, figure)
     above, below = (roller_force, roller_gap) if is_roller(ds) else (gear_speed, contact_torque)
     strips = 1 if is_roller(ds) else len(runs_of(ds, "gear_contact_torque"))
     lower = 2.8 if strips == 1 else 0.8 + 0.62 * strips
@@ -71,6 +75,18 @@ def overview(ds: xr.Dataset, *, figure: Figure | SubFigure | None = None) -> Fig
     top.tick_params(labelbottom=False)
     if is_roller(ds) and (repeated := bottom.get_legend()) is not None:
         repeated.remove()
+    figure.suptitle(_title(ds), x=0.01, ha="left", fontsize="large")
+    return figure
+
+
+def _train_overview(ds: xr.Dataset, figure: Figure | SubFigure | None) -> Figure | SubFigure:
+    single = not swept_dims(ds)
+    figure = figure or new_picture((7.6, 6.4 if single else 3.6), panels=True, layout="constrained")
+    top, *bottom = figure.subplots(1 + single, 1, squeeze=False)[:, 0]
+    gear_speed(ds, top)
+    top.set_ylabel(f"speed of {ds.attrs['judged_shaft']} (rad/s)")
+    for ax in bottom:
+        work(ds, ax)
     figure.suptitle(_title(ds), x=0.01, ha="left", fontsize="large")
     return figure
 

@@ -17,7 +17,7 @@ from gearidae.analysis.ringing import hidden
 from gearidae.analysis.spectra import banded, crowded_from
 from gearidae.analysis.verdict import START_UP
 from gearidae.archive.pieces import pieces, reached
-from gearidae.archive.select import run_scene, runs, scene_of, swept_dims
+from gearidae.archive.select import judged_teeth, run_scene, runs, scene_of, swept_dims
 from gearidae.arrays import Floats
 from gearidae.drawing.density import DECADES, draw_density, is_apart, legend_on_density, line_on_density
 from gearidae.drawing.style import (
@@ -88,7 +88,7 @@ def cycle(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     driven = [float(harmonic["frequency"]) for harmonic in harmonics if "frequency" in harmonic][:1]
     by_drive = bool(driven) and driven[0] * float(ds["time"][-1] - ds["time"][0]) > 1.0
     name = "cycle of the drive" if by_drive else "pitch of the gear"
-    pitch = 2.0 * math.pi / int(scene_of(ds)["gears"]["gear_teeth"])
+    pitch = 2.0 * math.pi / judged_teeth(scene_of(ds)).gear_teeth
     drawn = []
     for run in shown:
         end = reached(run.data["gear_speed"])
@@ -210,8 +210,8 @@ def orders(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     """
     shown = runs_of(ds, "gear_speed")
     ax = new_axes(ax)
-    gears = scene_of(ds)["gears"]
-    mesh = int(gears["gear_teeth"])
+    gears = judged_teeth(scene_of(ds))
+    mesh = gears.gear_teeth
     turns = _turns(ds)
     highest = (_WITH_SIDEBANDS if turns else _MARKED_IF_WIDE * 1.1) * mesh
     for run in shown:
@@ -231,7 +231,7 @@ def orders(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     if turns:
         _mark_sidebands(ax, float(mesh), turns)
     else:
-        _mark(ax, mesh / int(gears["pinion_teeth"]), "pinion")
+        _mark(ax, mesh / gears.pinion_teeth, gears.pinion)
     _mark_all(ax, [], float(mesh), [])
     ax.set_xlabel("order (per turn of the gear)")
     _note_aliases(ax, alias_note(ds))
@@ -267,10 +267,10 @@ def spectrogram(ds: xr.Dataset, ax: Axes | None = None, *, highest: float | None
     """
     run = _single(ds)
     density, found = analysis.spectrogram(run), analysis.impact_frequencies(run)
-    gears = scene_of(ds)["gears"]
+    gears = judged_teeth(scene_of(ds))
     half = 0.5 * float(density.attrs["segment_length"])
     turns = _mean_speed(run, density["time"].values, half) / (2.0 * math.pi)
-    mesh = int(gears["gear_teeth"]) * turns
+    mesh = gears.gear_teeth * turns
     if highest is None:
         rings = found["frequency"].values
         highest = 4.0 * max([*rings[np.isfinite(rings)], 0.0])
@@ -283,7 +283,7 @@ def spectrogram(ds: xr.Dataset, ax: Axes | None = None, *, highest: float | None
     across = density["time"].values * scale.factor
     draw_density(ax, across, density["frequency"].values, density.values, "(rad/s)²/Hz")
     shown = float(density["frequency"][-1])
-    lines = {"mesh": mesh, "pinion": mesh / int(gears["pinion_teeth"]), "gear": turns}
+    lines = {"mesh": mesh, gears.pinion: mesh / gears.pinion_teeth, gears.gear: turns}
     for (name, line), style in zip(lines.items(), ("-", "--", ":"), strict=True):
         if is_apart(line, shown):
             line_on_density(ax, across, line, name, style)
@@ -533,7 +533,7 @@ def _mean_speed(run: xr.Dataset, middle: Floats, half: float) -> Floats:
 
 
 def _mesh_frequency(ds: xr.Dataset, run: xr.Dataset) -> float:
-    teeth = int(scene_of(ds)["gears"]["gear_teeth"])
+    teeth = judged_teeth(scene_of(ds)).gear_teeth
     return abs(float(run["gear_speed"].mean())) * teeth / (2.0 * math.pi)
 
 

@@ -12,7 +12,7 @@ import xarray as xr
 
 from gearidae.analysis.verdict.headline import headline
 from gearidae.archive.pieces import pieces
-from gearidae.archive.select import first_travel, is_roller, motion_samples, run_scene, runs
+from gearidae.archive.select import first_travel, is_roller, motion_samples, refuse_train, run_scene, runs
 from gearidae.archive.target import whole_file
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
@@ -174,6 +174,7 @@ def _samples(ds: xr.Dataset) -> int:
         raise SceneError(
             "explore", "a roller", "needs gears; gearidae report shows the force and gap of a roller"
         )
+    refuse_train(ds)
     missing = [name for name in ("gear_angle", *FRAME[1:]) if name not in ds.variables]
     if missing:
         raise SceneError("explore", missing[0], "the dataset has no samples of it")

@@ -9,10 +9,9 @@ from pathlib import Path
 import xarray as xr
 
 from gearidae.analysis.verdict.headline import headline
-from gearidae.archive.select import swept_dims
+from gearidae.archive.select import is_train, swept_dims
 from gearidae.archive.specimen import specimen_note
 from gearidae.archive.target import whole_file
-from gearidae.archive.train.variables import is_train
 from gearidae.drawing.style import number_shown
 from gearidae.errors import SceneError
 from gearidae.plot.overview import usual_pictures

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from gearidae.errors import Interrupted, SceneError
@@ -63,18 +64,25 @@ def simulate_train(
 
 
 def _run(scene: TrainScene, backend: str, progress: bool | RunProgress) -> xr.Dataset:
-    from gearidae.engine.train import solve_train  # what reads results does without it
-
     with run_progress(progress, scene.run.duration) as report:
-        solution = solve_train(scene, backend=backend, on_progress=report)
-    from gearidae.analysis.verdict.train import judge_train
-    from gearidae.archive.train import judged_view, train_dataset
+        ds = run_train(scene, backend, report)
+    from gearidae.archive.train import judged_view
     from gearidae.runs.imbalance import log_imbalance
 
-    judged = judge_train(scene, solution)
-    ds = train_dataset(scene, solution, judged.extremes, judged.held_by)
     log_imbalance(judged_view(ds))
     return ds
+
+
+def run_train(scene: TrainScene, backend: str, on_progress: Callable[[float, int], None]) -> xr.Dataset:
+    """Run a train and judge it, with a status that says how it ended."""
+    from gearidae.engine.train import solve_train  # what reads results does without it
+
+    solution = solve_train(scene, backend=backend, on_progress=on_progress)
+    from gearidae.analysis.verdict.train import judge_train
+    from gearidae.archive.train import train_dataset
+
+    judged = judge_train(scene, solution)
+    return train_dataset(scene, solution, judged.extremes, judged.held_by)
 
 
 def _ended(ds: xr.Dataset) -> xr.Dataset:

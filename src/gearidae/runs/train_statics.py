@@ -21,6 +21,7 @@ from gearidae.arrays import Floats
 from gearidae.errors import SolverError
 from gearidae.mesh.involute import curvature_radii, separation
 from gearidae.mesh.pair_contact import PairContact, pair_contact
+from gearidae.mesh.train_modes import levers
 from gearidae.runs.estimates import mean_over_run
 from gearidae.scene import GearScene, TrainScene
 from gearidae.scene.train import Train, TrainMesh
@@ -30,15 +31,6 @@ _LONGEST: Final = 0.5
 """Longest step of Newton's iteration in roughnesses: the force of a contact grows e-fold over a quarter of one."""
 _BALANCED: Final = 1e-12
 """Error of the balance over the drive's torque at which the iteration ends."""
-
-
-def levers(train: Train) -> Floats:
-    """Change of each mesh's transmission error with the angle of each shaft, shape (meshes, shafts) [m]."""
-    arms = np.zeros((len(train.meshes), len(train.shafts)))
-    for row, mesh in zip(arms, train.meshes, strict=True):
-        row[mesh.a] = mesh.geometry.base_radius_pinion
-        row[mesh.b] = -mesh.geometry.base_radius_gear
-    return arms
 
 
 def ratios(train: Train) -> Floats:
@@ -189,25 +181,6 @@ class _Mesh:
         """Transmission error [m] at which the nearest pair alone carries a load [N]."""
         contact, away = min(self.pairs, key=lambda pair: pair[1])
         return self.half + away - contact.resting_gap(load, 1e-6)
-
-
-def natural_frequencies(scene: TrainScene, forces: Floats) -> list[float]:
-    """Frequencies of small oscillations [Hz], rising, with one pair at the pitch point in every mesh that is pressed.
-
-    Square roots of the eigenvalues of ``J I^-1 J' K``, with the levers J, inertias I and stiffnesses K of the meshes.
-    """
-    train = scene.train
-    stiffness = np.zeros(len(train.meshes))
-    for number, (mesh, force) in enumerate(zip(train.meshes, forces, strict=True)):
-        contact = pair_contact(scene.pair(mesh.name))
-        gap = contact.resting_gap(float(force))
-        stiffness[number] = 0.0 if math.isnan(gap) else max(contact.stiffness(gap), 0.0)
-    scaled = levers(train) / np.sqrt([shaft.inertia for shaft in train.shafts])
-    roots = np.sqrt(stiffness)
-    squares = np.linalg.eigvalsh(roots[:, None] * (scaled @ scaled.T) * roots)
-    independent = len(train.shafts) - 1  # of more meshes the rest follow
-    pressed = min(independent, int(np.count_nonzero(stiffness)))
-    return [math.sqrt(max(square, 0.0)) / (2.0 * math.pi) for square in squares[len(squares) - pressed :]]
 
 
 def line_of_action(train: Train, mesh: TrainMesh) -> Floats:

@@ -520,7 +520,7 @@ def require_gears(scene: Scene) -> GearScene:
             raise SceneError(
                 "meshes",
                 f"({len(scene.meshes)} meshes)",
-                "must be one here: trains of several are run by simulate alone; scene.pair(NAME) is a stage",
+                "must be one here: trains of several are run by simulate and sweep alone; scene.pair(NAME) is a stage",
             )
         return scene.pair(next(iter(scene.meshes)))
     if not isinstance(scene, GearScene):

@@ -12,9 +12,10 @@ import xarray as xr
 
 from gearidae.archive.row_variables import LABELS, kinds_in, own_rows
 from gearidae.archive.run_summary import RunSummary, summary_of
-from gearidae.archive.select import is_roller, run_scene, runs, scene_of, single_run, swept_dims
+from gearidae.archive.select import is_roller, is_train, run_scene, runs, scene_of, single_run, swept_dims
 from gearidae.archive.tables import LARGEST_TABLE, row_table, run_labels, time_series
 from gearidae.archive.totals import energy_balance
+from gearidae.archive.train import judged_view
 from gearidae.archive.variables import EXTREMES, SAM_FRACTION, STANDSTILL_LIST
 from gearidae.errors import SceneError
 from gearidae.records import Events, Impacts, Passages
@@ -101,7 +102,7 @@ class Results:
     @property
     def energy_balance(self) -> dict[str, float] | None:
         """Energy balance of a single run [J] by the names of its variables, with ``time`` [s]; None without one."""
-        return energy_balance(self._ds)
+        return energy_balance(judged_view(self._ds))
 
     def sel(self, **labels: Any) -> xr.Dataset:
         """Pick runs by their labels, with only their own events.
@@ -316,9 +317,10 @@ class Results:
             "sel": of_runs and not single,
             "scenes": of_runs and not single,
             "template": not (of_runs and single),
-            "account": of_runs and single and not is_roller(ds),
+            "account": of_runs and single and not is_roller(ds) and not is_train(ds),
             "energy_balance": of_runs and single,
             "verdicts()": of_runs,
+            "work()": of_runs and single and is_train(ds),
             "standstills()": of_runs and STANDSTILL_LIST.name in ds,
             "to_dataframe()": "time" in ds.dims,
             **{f"{kind.field}()": True for kind in kinds_in(ds)},

@@ -294,7 +294,7 @@ def _gear(label: dict[str, Any], run: xr.Dataset) -> GearOutcome:
         advance=kept.advance,
         settled=int(kept.settled),
         shaft=run.attrs.get("judged_shaft", ""),
-        holders=str(run.attrs.get("held_by", "")),
+        holders=str(run["held_by"].values if "held_by" in run else run.attrs.get("held_by", "")),
     )
 
 

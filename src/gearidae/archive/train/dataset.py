@@ -93,7 +93,7 @@ def train_dataset(
         coords={
             "time": ("time", solution.time, TIME.attributes),
             **run_label(scene),
-            **_coordinates(scene),
+            **coordinates(scene),
         },
         attrs={
             **provenance(scene, f"simulated {solution.reached:g} s"),
@@ -113,7 +113,8 @@ def train_dataset(
     )
 
 
-def _coordinates(scene: TrainScene) -> dict[str, Any]:
+def coordinates(scene: TrainScene) -> dict[str, Any]:
+    """Labels of the shafts and meshes of a scene."""
     train, judged = scene.train, scene.train.shafts[judged_shaft(scene)].ratio
     values: dict[str, list[Any]] = {
         "shaft": [shaft.name for shaft in train.shafts],

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from typing import Final
 
 import numpy as np
-import xarray as xr
 
 from gearidae.archive.variables import EXTREMES, SAMPLES, Variable
 
@@ -134,6 +133,10 @@ EVENT_PLACES: Final[Mapping[str, Variable]] = {
 REST_LIST: Final = Variable(
     "rest_list", (), "1", "intervals at rest as JSON: shaft, begin and end in seconds", np.object_
 )
+HELD_BY: Final = Variable("held_by", (), "1", "what holds the judged shaft, by names", np.str_)
+"""Of each run of a sweep; of a single run it is an attribute."""
+ATTRIBUTES: Final = ("judged_shaft", "judged_mesh", "drive_shaft")
+"""Attributes that all runs of a sweep have in common."""
 ALL: Final[Mapping[str, Variable]] = {
     **COORDINATES,
     **TRAIN_SAMPLES,
@@ -145,8 +148,3 @@ ALL: Final[Mapping[str, Variable]] = {
     REST_LIST.name: REST_LIST,
 }
 """By their names."""
-
-
-def is_train(ds: xr.Dataset) -> bool:
-    """Whether a dataset is of a train of several meshes."""
-    return "shaft" in ds.dims and "mesh" in ds.dims

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import xarray as xr
 
-from gearidae.archive.select import run_scene
-from gearidae.archive.train.variables import COORDINATES, MESH_TOTALS, SHAFT_TOTALS, TRAIN_SAMPLES, is_train
+from gearidae.archive.select import is_train, run_scene
+from gearidae.archive.train.variables import COORDINATES, MESH_TOTALS, SHAFT_TOTALS, TRAIN_SAMPLES
 from gearidae.archive.train.work import MESH_LOSSES
 from gearidae.archive.variables import ENERGY_BALANCE
 from gearidae.errors import SceneError

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from gearidae.archive.train.variables import is_train
+from gearidae.archive.select import is_train
 from gearidae.errors import SceneError
 
 if TYPE_CHECKING:

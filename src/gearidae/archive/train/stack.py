@@ -1,0 +1,147 @@
+"""Runs of trains along the axes of a sweep."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Hashable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from gearidae.archive.dataset import dimension_names, key_labels
+from gearidae.archive.provenance import provenance
+from gearidae.archive.stack import Axis, with_zipped
+from gearidae.archive.train.dataset import coordinates
+from gearidae.archive.train.variables import ATTRIBUTES, COORDINATES, HELD_BY
+from gearidae.archive.variables import CONTACT, OF_SWEPT_RUN, RUN, SAM_FRACTION, Variable
+
+if TYPE_CHECKING:
+    from gearidae.scene import Scene, TrainScene
+
+_TOTALS = tuple(name for name, variable in RUN.items() if variable.dtype is np.int64)
+_OF_RUN: dict[str, Variable] = dict(RUN)
+_OF_RUN |= {variable.name: variable for variable in CONTACT} | {"skipped": OF_SWEPT_RUN["skipped"]}
+"""Attributes of a single run that are variables of a sweep."""
+
+
+def stack_trains(
+    base: Scene, axes: Sequence[Axis], scenes: Sequence[TrainScene], members: Sequence[xr.Dataset]
+) -> xr.Dataset:
+    """Put runs of trains into one dataset.
+
+    Parameters
+    ----------
+    base : Scene
+        What the runs have in common.
+    axes : sequence of dict
+        For each dimension, the values of its keys in SI units; several keys where they are zipped.
+    scenes, members : sequence
+        Of each run its scene, and its dataset from `gearidae.archive.train.train_dataset`; shafts and meshes have the
+        same names in all. The last axis changes fastest.
+
+    Returns
+    -------
+    xarray.Dataset
+        See `gearidae.sweep`.
+    """
+    leaders = {leader: axis[leader] for axis in axes for leader in [next(iter(axis))]}
+    names = dimension_names(leaders)
+    dims, shape = tuple(names.values()), tuple(len(values) for values in leaders.values())
+    labels = {names[key]: key_labels(key, names[key], values) for key, values in leaders.items()}
+    first, longest = members[0], max((member["time"] for member in members), key=len)
+    members = [member.reindex(time=longest) for member in members]
+
+    def stacked(values: Sequence[Any], dtype: Any, over: tuple[Any, ...] = ()) -> tuple[Any, Any]:
+        array = np.empty((len(members), *np.shape(values[0])), dtype=dtype)
+        for row, value in enumerate(values):
+            array[row] = value
+        return (*dims, *over), array.reshape(*shape, *np.shape(values[0]))
+
+    variables: dict[Hashable, Any] = {}
+    coords: dict[Hashable, Any] = {"time": ("time", longest.values, longest.attrs)}
+    coords.update(labels)
+    for name, variable in first.data_vars.items():
+        parts = [member[name].values for member in members]
+        if "event" in variable.dims:
+            variables[name] = (("event",), np.concatenate(parts), variable.attrs)
+        else:
+            variables[name] = (*stacked(parts, variable.dtype, variable.dims), variable.attrs)
+    for name in COORDINATES:
+        parts = [member[name].values for member in members]
+        alike = all(np.array_equal(part, parts[0]) for part in parts)
+        over = first[name].dims
+        values = (over, parts[0]) if alike else stacked(parts, parts[0].dtype, over)
+        coords[name] = (*values, first[name].attrs)
+    variables.update(_event_labels(labels, [member.sizes["event"] for member in members]))
+    for name, known in _OF_RUN.items():
+        variables[name] = _column(known, [member.attrs[name] for member in members], dims, shape)
+    held = [member.attrs.get("held_by", "") for member in members]
+    variables[HELD_BY.name] = _column(HELD_BY, held, dims, shape)
+    inputs = [json.dumps(scene.to_dict(), allow_nan=False) for scene in scenes]
+    variables["scene"] = _column(OF_SWEPT_RUN["scene"], inputs, dims, shape)
+    if "sam_fraction" not in dims:
+        coords["sam_fraction"] = ((), base.coating.sam_fraction, SAM_FRACTION.attributes)
+    done = sum(member.attrs["status"] == "finished" for member in members)
+    every = done == len(members)
+    drivers = {name: {member.attrs[name] for member in members} - {""} for name in ("backend", "method")}
+    ds = xr.Dataset(
+        variables,
+        coords=coords,
+        attrs={
+            **provenance(base, f"swept {len(members)} runs", swept=tuple(leaders)),
+            "swept": json.dumps(leaders, allow_nan=False),
+            "status": "finished" if every else "partial",
+            "message": "" if every else f"{done} of {len(members)} runs finished",
+            **{name: sum(int(member.attrs[name]) for member in members) for name in _TOTALS},
+            "wall_time": float(sum(member.attrs["wall_time"] for member in members)),
+            **{name: ", ".join(sorted(texts)) for name, texts in drivers.items()},
+            **{name: first.attrs[name] for name in ATTRIBUTES},
+        },
+    )
+    return with_zipped(ds, base, axes)
+
+
+def unfinished(like: xr.Dataset, scene: TrainScene) -> xr.Dataset:
+    """Make the dataset of a run that an interrupt has kept from its end: without samples and events, else NaN and 0.
+
+    Parameters
+    ----------
+    like : xarray.Dataset
+        A run of the same sweep that is there.
+    """
+    blank = like.isel(time=slice(0), event=slice(0)).assign_coords(coordinates(scene))
+    for name, variable in blank.data_vars.items():
+        kind = variable.dtype.kind
+        nothing: Any = math.nan if kind == "f" else 0 if kind in "iub" else "[]"  # texts are lists
+        blank[name] = variable.copy(data=np.full(variable.shape, nothing, dtype=variable.dtype))
+    gone = {name: value for name, value in like.attrs.items() if name != "held_by"}
+    blank.attrs = {
+        **gone,
+        **dict.fromkeys(_TOTALS, 0),
+        "wall_time": 0.0,
+        "status": "interrupted",
+        "message": "the sweep was interrupted before this run was finished",
+    }
+    return blank
+
+
+def _column(
+    variable: Variable, values: Sequence[Any], dims: tuple[str, ...], shape: tuple[int, ...]
+) -> tuple[Any, Any, Any]:
+    column = np.empty(len(values), dtype=object)
+    column[:] = values
+    return dims, column.astype(variable.dtype).reshape(shape), variable.attributes
+
+
+def _event_labels(labels: dict[str, xr.Variable], counts: Sequence[int]) -> dict[Hashable, Any]:
+    """Label every event with the run that it belongs to."""
+    shape = tuple(label.size for label in labels.values())
+    places = np.unravel_index(np.arange(len(counts)), shape)
+    made: dict[Hashable, Any] = {}
+    for place, (dim, label) in zip(places, labels.items(), strict=True):
+        if dim != "sam_fraction":  # which every event has
+            words = {"long_name": f"{dim} of the run the event belongs to", "units": label.attrs["units"]}
+            made[f"event_{dim}"] = (("event",), np.repeat(label.values[place], counts), words)
+    return made

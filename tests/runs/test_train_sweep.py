@@ -1,0 +1,145 @@
+"""Sweeps over trains: members equal single runs, in threads and in processes, in memory and in files."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+from tests.reference.trains import chain
+
+import gearidae as gd
+from gearidae.cli import main
+from gearidae.runs import train_sweep
+from gearidae.runs.train_sweep import train_member
+from gearidae.scene import Scene, dump_case
+
+COVERAGE, HUB = "meshes.second.coating.sam_fraction", "shafts.idler.hub_radius"
+OVER = {COVERAGE: [1.0, 0.5], HUB: [3e-6, 5e-6]}
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return Scene.from_dict(chain(hubs=0.3)).replace({"run.duration": "60 us", "run.samples": 61})
+
+
+@pytest.fixture(scope="module")
+def swept(scene):
+    return gd.sweep(scene, OVER, jobs=1, progress=False)
+
+
+def same(run, single):
+    xr.testing.assert_equal(run, single)
+    changing = {"wall_time", "history", "date_created", "end_state", "end_sha256", "keep"}
+    mine, its = ({k: v for k, v in ds.attrs.items() if k not in changing} for ds in (run, single))
+    for name in mine.keys() & its.keys():
+        assert mine[name] == its[name], name
+    assert {"judged_shaft", "judged_mesh", "drive_shaft", "status", "scene", "steps"} <= mine.keys()
+
+
+def test_each_member_is_the_run_of_its_scene(scene, swept):
+    assert swept["shaft_speed"].dims == ("meshes_second_coating_sam_fraction", "hub_radius", "shaft", "time")
+    for fraction in OVER[COVERAGE]:
+        for radius in OVER[HUB]:
+            run = swept.gearidae.run(meshes_second_coating_sam_fraction=fraction, hub_radius=radius)
+            single = gd.simulate(scene.replace({COVERAGE: fraction, HUB: radius}), progress=False)
+            same(run, single)
+            assert run.gearidae.scene == single.gearidae.scene
+            assert run.gearidae.verdicts().words[0] == single.gearidae.verdicts().words[0]
+            xr.testing.assert_equal(run.gearidae.work().to_xarray(), single.gearidae.work().to_xarray())
+
+
+@pytest.mark.parametrize("backend", ["native", "sksundae"])
+def test_jobs_and_files_give_the_same(scene, swept, tmp_path, backend):
+    """Two threads of the compiled loop, two processes of the portable driver."""
+    short = scene if backend == "native" else scene.replace({"run.duration": "5 us"})
+    over = OVER if backend == "native" else {COVERAGE: [1.0, 0.5]}
+    path = tmp_path / "sweep.nc"
+    gd.sweep(short, over, jobs=2, backend=backend, progress=False, archive=path)
+    read = gd.open_archive(path)
+    whole = swept if backend == "native" else gd.sweep(short, over, jobs=1, backend=backend, progress=False)
+    xr.testing.assert_equal(read.drop_vars("wall_time"), whole.drop_vars("wall_time"))
+    assert read.attrs["swept"] == whole.attrs["swept"]
+    assert [*read.gearidae.verdicts().words] == [*whole.gearidae.verdicts().words]
+
+
+def test_zipped_keys_and_ratios_that_differ(scene):
+    over = {"shafts.output.teeth": [76, 95], "shafts.output.inertia": [4.2e-18, 1e-17]}
+    ds = gd.sweep(scene.replace({"run.duration": "5 us"}), over, zipped=True, jobs=1, progress=False)
+    np.testing.assert_array_equal(ds["mesh_ratio"].sel(mesh="second"), [2.0, 2.5])
+    assert ds["inertia"].dims == ("teeth",)
+    run = ds.gearidae.run(inertia=1e-17)
+    assert run["mesh_ratio"].dims == ("mesh",)
+    assert run.gearidae.scene.shafts["output"].teeth == 95
+    same(run, gd.simulate(run.gearidae.scene, progress=False))
+
+
+def test_who_holds_is_kept_of_each_run(scene):
+    rest = scene.replace({"initial.gear_speed": 0.0, "run.duration": "1 ms"})
+    ds = gd.sweep(rest, {"drive.torque": [7e-12, 1.2e-11]}, jobs=1, progress=False)
+    single = gd.simulate(rest.replace({"drive.torque": 7e-12}), progress=False)
+    assert ds["held_by"].values.tolist() == [single.attrs["held_by"], ""]
+    assert ds.gearidae.run(torque=7e-12).attrs["held_by"] == single.attrs["held_by"]
+    assert ds.gearidae.verdicts().words[0] == single.gearidae.verdicts().words[0]
+
+
+@pytest.mark.parametrize("after", [0, 1])
+def test_ctrl_c_leaves_the_finished_runs(scene, swept, tmp_path, monkeypatch, after):
+    ran = []
+
+    def member(member_scene, backend):
+        if len(ran) == after:
+            raise KeyboardInterrupt
+        ran.append(member_scene)
+        return train_member(member_scene, backend)
+
+    monkeypatch.setattr(train_sweep, "train_member", member)
+    path = tmp_path / "sweep.nc"
+    with pytest.raises(gd.Interrupted) as caught:
+        gd.sweep(scene, OVER, jobs=1, progress=False, archive=path)
+    if not after:
+        assert not caught.value.dataset.sizes
+        assert not path.exists()
+        return
+    read = gd.open_archive(path)
+    assert read["status"].values.ravel().tolist() == ["finished", *["interrupted"] * 3]
+    assert read.gearidae.verdicts().verdict.tolist() == ["turns smoothly", *["unfinished"] * 3]
+    first = {"meshes_second_coating_sam_fraction": 1.0, "hub_radius": 3e-6}
+    xr.testing.assert_equal(read.gearidae.run(**first), swept.gearidae.run(**first))
+    assert np.isnan(read["shaft_speed"][1, 1]).all()
+
+
+def test_pictures_and_report_of_a_sweep(swept, tmp_path):
+    for draw in (gd.plot.overview, gd.plot.gear_speed, gd.plot.outcome, gd.plot.orders):
+        assert draw(swept) is not None
+    page = gd.write_report(swept, tmp_path / "report.html").read_text()
+    assert "turned smoothly" in page
+    with pytest.raises(gd.SceneError, match="must be a single run of a train"):
+        gd.plot.work(swept)
+
+
+@pytest.mark.parametrize(
+    ("over", "options", "message"),
+    [
+        ({COVERAGE: [1.0]}, {"keep": ["verdict"]}, "keep = .*everything is kept of their runs"),
+        ({COVERAGE: [1.0]}, {"resume": True}, "resume = True: is not for trains of several meshes"),
+        ({"run.judged": ["idler", "output"]}, {}, "over = run.judged: must leave the shafts"),
+    ],
+)
+def test_what_trains_do_not_have_is_refused(scene, over, options, message):
+    with pytest.raises(gd.SceneError, match=message):
+        gd.sweep(scene, over, progress=False, **options)
+
+
+def test_runs_of_trains_are_not_joined(scene, swept):
+    run = swept.gearidae.run(meshes_second_coating_sam_fraction=1.0, hub_radius=3e-6)
+    with pytest.raises(gd.SceneError, match="are of trains of several meshes"):
+        gd.concat([run, run], COVERAGE)
+
+
+def test_the_command_line_sweeps_a_train(scene, tmp_path, capfd):
+    case, path = tmp_path / "train.toml", tmp_path / "out.nc"
+    case.write_text(dump_case(scene.replace({"run.duration": "5 us"})))
+    assert main(["sweep", str(case), "--over", f"{COVERAGE}=1,0.5", "-o", str(path)]) == 0
+    assert "2 runs" in capfd.readouterr().out
+    assert main(["info", str(path)]) == 0
+    assert gd.open_archive(path).sizes["meshes_second_coating_sam_fraction"] == 2
