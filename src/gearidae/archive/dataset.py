@@ -38,7 +38,7 @@ from gearidae.scene.combinations import bodies_reason
 from gearidae.scene.sampled import columns_of
 
 _COUNTERS = tuple(name for name, variable in RUN.items() if variable.dtype is np.int64)
-_RESERVED = {*by_name(), *DIMS, "scene", "coordinates"} - {SAM_FRACTION.name}
+_RESERVED = {*by_name(), *DIMS, "scene", "coordinates"}
 
 
 def to_dataset(scene: Scene, solution: Solution) -> xr.Dataset:
@@ -231,7 +231,8 @@ def dimension_names(keys: Sequence[str] | Mapping[str, Any]) -> dict[str, str]:
 
     The last part of the key (``coating.sam_fraction`` gives ``sam_fraction``), unless that is taken by
     another swept key or by a variable of the dataset; then the whole key with underscores (``roller_speed``), which has
-    ``swept_`` before it where that is a variable, too (``swept_drive_torque``).
+    ``swept_`` before it where that is a variable, too (``swept_drive_torque``). ``sam_fraction``, which labels runs, is
+    ``coating.sam_fraction`` alone: that of one mesh of a train is ``meshes_second_coating_sam_fraction``.
 
     Parameters
     ----------
@@ -250,7 +251,7 @@ def dimension_names(keys: Sequence[str] | Mapping[str, Any]) -> dict[str, str]:
         taken = last.count(short) > 1 or short in _RESERVED or short.isdecimal()
         whole = key.replace(".", "_")
         whole = f"swept_{whole}" if whole in _RESERVED else whole
-        names[key] = whole if taken else short
+        names[key] = whole if taken and key != COVERAGE_KEY else short
     return names
 
 

@@ -15,7 +15,7 @@ from gearidae.archive.provenance import provenance
 from gearidae.archive.stack import Axis, with_zipped
 from gearidae.archive.train.dataset import coordinates
 from gearidae.archive.train.variables import ATTRIBUTES, COORDINATES, HELD_BY
-from gearidae.archive.variables import CONTACT, OF_SWEPT_RUN, RUN, SAM_FRACTION, Variable
+from gearidae.archive.variables import CONTACT, OF_SWEPT_RUN, RUN, SAM_FRACTION, Variable, run_label
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene, TrainScene
@@ -81,8 +81,8 @@ def stack_trains(
     variables[HELD_BY.name] = _column(HELD_BY, held, dims, shape)
     inputs = [json.dumps(scene.to_dict(), allow_nan=False) for scene in scenes]
     variables["scene"] = _column(OF_SWEPT_RUN["scene"], inputs, dims, shape)
-    if "sam_fraction" not in dims:
-        coords["sam_fraction"] = ((), base.coating.sam_fraction, SAM_FRACTION.attributes)
+    if SAM_FRACTION.name not in dims:
+        coords.update({**run_label(base)})
     done = sum(member.attrs["status"] == "finished" for member in members)
     every = done == len(members)
     drivers = {name: {member.attrs[name] for member in members} - {""} for name in ("backend", "method")}
