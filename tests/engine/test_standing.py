@@ -369,6 +369,42 @@ def test_a_gear_that_settles_in_a_well_of_its_drive_stops(spring_law, well, end)
     assert outcome.words.endswith("as free gears do, held by the drive's own well")
 
 
+def swing(stiffness, viscous):
+    """Half period [s] of free gears under a spring on the pinion, and the part of a swing that the next one has."""
+    plant = Plant.of(PAIR)
+    decay = viscous / (2.0 * plant.inertia)
+    half = math.pi / math.sqrt(plant.ratio**2 * stiffness / plant.inertia - decay**2)
+    return half, math.exp(-decay * half)
+
+
+@pytest.mark.parametrize(("viscous", "gap"), [(2e-18, "100 nm"), (5e-19, "60 nm")])
+def test_a_gear_that_swings_in_a_well_never_sticks_and_stops_after_its_first_period(spring_law, viscous, gap):
+    """Just after it turns the pinion passes the backlash, and free gears are ahead of the gear for that time."""
+    half, ratio = swing(1e-17, viscous)
+    rest = 0.24  # pitches
+    law = {"name": "drawn_spring", "stiffness": 1e-17, "damping": 0.0, "rest": rest * 2.0 * math.pi / 18}
+    damped = {"load.torque": 0.0, "load.drag": 0.0, "load.viscous": viscous, "drive.law": law}
+    start = {"initial.gear_speed": 0.0, "initial.gap": gap, "coating.sam_fraction": 1.0}
+    for halves in (1.02, 1.04, 1.06, 1.08, 1.5, 2.05, 2.5, 3.02, 3.06, 5.04):
+        ds = ended(halves * half, **{"drive.schedule": []}, **damped, **start)
+        (outcome,) = outcomes(ds)
+        assert (outcome.verdict == "stops") is (halves > 2.0), halves
+        # the first 3 % are those of the initial gap, before it has moved
+        late = ds.gearidae.standstills().query("not end < 0.03 * @half")
+        assert "sticks" not in [outcome.verdict, *late.verdict], halves
+        # of free gears, to 1e-6 of the step response
+        assert float(ds.free_advance) == pytest.approx(rest * (1.0 + ratio), rel=1e-5)
+
+
+def test_a_gear_that_turns_round_in_the_well_of_an_order_does_not_stick():
+    """It has moved by 7e-4 pitches in the 2 % of the run since its speed was zero, and free gears by 1.8e-3."""
+    damped = {"drive.schedule": [], "load.torque": 0.0, "load.viscous": 1e-18, "coating.sam_fraction": 1.0}
+    ds = ended(1.0, **damped, **WELLS["order"])
+    assert outcomes(ds)[0].verdict == "irregular"
+    assert ds.gearidae.standstills().empty
+    assert outcomes(ended(1.01, **damped, **WELLS["order"]))[0].verdict == "stops"
+
+
 def test_a_microengine_that_brakes_its_gears_stops_them():
     """Free gears would follow its field on by 0.4 pitches, and settle in it."""
     scene = gd.load_case("cases/microengine.toml").to_dict()

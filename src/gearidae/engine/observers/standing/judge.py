@@ -282,7 +282,7 @@ class Judge:
         for z in zeros:
             if not stood.has(z) and z.time < limit:
                 time, way, farthest = self._stood_until(seen, z, limit, length)
-                if time > 0.0:
+                if time > 0.0 and not self._swings(zeros, z, farthest, time, place):
                     self._add(stood, seen, z, time, (way, farthest), 0, begun=farthest > 0.0)
                     return
 
@@ -334,7 +334,8 @@ class Judge:
         """First zero from which the gear stands until a time at a position, in a run of a length [s].
 
         A gear that dry friction has held until then, no farther than `held` from the zero [pb], has stood, whatever
-        free gears have done: under nearly the same load they may have just begun to move.
+        free gears have done: under nearly the same load they may have just begun to move. One that swings has not,
+        see `_swings`.
         """
         for z in zeros:
             if z.time > time:
@@ -343,10 +344,27 @@ class Judge:
             if lasts <= SHARE * length and self._gears(z).bound(time) < NOTICED:
                 continue
             free, way = self._free_until(z, time), distance(z, position)
-            together = self._settles(z, free, time, position) == 2
-            if stands(way, free.farthest, lasts, length, together or way <= held):
+            kept = way <= held or self._settles(z, free, time, position) == 2
+            if stands(way, free.farthest, lasts, length, kept) and (
+                kept or not self._swings(zeros, z, free.farthest, time, position)
+            ):
                 return z
         return None
+
+    def _swings(self, zeros: list[Zero], z: Zero, free_advance: float, time: float, position: float) -> bool:
+        """Whether a gear that stands from a zero until a time [s] at a position only turns round there.
+
+        It has followed free gears from an earlier zero, for longer than since. Until the pinion has passed the
+        backlash, free gears that swing back are ahead of it by a small part of a pitch.
+        """
+        if not 0.0 < free_advance < NOTICED:
+            return False
+        for earlier in zeros[: zeros.index(z)]:
+            free = self._free_until(earlier, time)
+            followed = distance(earlier, position) >= 0.5 * free.farthest >= 0.5 * NOTICED
+            if followed and time - z.time < z.time - free.onset:
+                return True
+        return False
 
     def _stood_until(self, seen: Seen, z: Zero, limit: float, length: float) -> tuple[float, float, float]:
         """When the conditions of standing from a zero held last before a time [s]; 0 if they did not.
