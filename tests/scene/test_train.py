@@ -472,13 +472,9 @@ def test_stages_are_pairs_with_their_own_tables():
         scene.pair("third")
 
 
-def test_sweeps_and_most_studies_take_no_several_meshes():
+def test_most_studies_take_no_several_meshes():
     scene = scene_of(chain())
-    for call in (
-        gd.studies.sticking_threshold,
-        gd.studies.coating_map,
-        lambda s: gd.sweep(s, {"run.rtol": [1e-5, 1e-6]}),
-    ):
+    for call in (gd.studies.sticking_threshold, gd.studies.coating_map):
         with pytest.raises(
             gd.SceneError, match=r"^meshes = \(2 meshes\): must be one here: .*scene\.pair\(NAME\)"
         ):

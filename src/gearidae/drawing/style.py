@@ -93,13 +93,16 @@ class Run:
         return thin(self.data["time"], self.data[name], reached(self.data[name]))
 
     def settled(self, name: str) -> Spread:
-        """Return how the samples [SI] are spread, without the first touch of gears that move at the start."""
+        """Return how the samples [SI] are spread, without the first touch of gears that move at the start.
+
+        The whole run counts where a law drives or loads the gears, or a schedule from rest: these shape the beginning.
+        """
         values = self.data[name]
         end = reached(values)
         scene = scene_of(self.data)
         by_law = any((scene.get(shaft) or {}).get("law") for shaft in ("drive", "load"))
         at_rest = not (scene.get("initial") or {}).get("gear_speed")
-        left_out = 0.0 if at_rest and (by_law or is_scheduled(scene)) else START_UP
+        left_out = 0.0 if by_law or (at_rest and is_scheduled(scene)) else START_UP
         return spread(values, int(left_out * end), end)
 
 
