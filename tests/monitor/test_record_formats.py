@@ -47,6 +47,12 @@ def test_compressed_text(tmp_path):
         read_signal(tmp_path / "b.csv.gz")
 
 
+def test_a_damaged_workbook_is_refused_in_one_line(tmp_path):
+    (tmp_path / "a.xlsx").write_bytes(b"PK\x03\x04" + bytes(100))
+    with pytest.raises(gd.SceneError, match=r"\.xlsx file|openpyxl, which is not installed"):
+        read_signal(tmp_path / "a.xlsx", columns=COLUMNS)
+
+
 @pytest.mark.parametrize(("suffix", "library"), [(".xlsx", "openpyxl"), (".tdms", "npTDMS")])
 def test_a_library_that_is_missing_is_named(tmp_path, suffix, library):
     try:

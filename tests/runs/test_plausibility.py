@@ -11,11 +11,14 @@ import pytest
 import gearidae as gd
 from gearidae.runs.plausibility import doubts
 from gearidae.runs.validity import validity_attribute
+from reference.own_pair import OWN_PAIR
 from reference.random_scenes import random_scene
 
 CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
 LOW = gd.preset("teodorescu2009_low_speed")
 ROLLER = gd.preset("roller_slow")
+DISCS = LOW.replace({"gears": OWN_PAIR["gears"]})
+"""Gears of 18 and 54 teeth, solid discs."""
 
 
 @pytest.mark.parametrize("case", [pytest.param(path, id=path.stem) for path in CASES])
@@ -53,6 +56,16 @@ def test_nothing_is_said_of_the_shipped_cases(case):
                 "load.harmonic": [{"amplitude": -1e-18, "frequency": f} for f in (1e3, 2e3)],
             },
             "load.harmonic swings by 2 aN m about a dry resistance of 1 aN m",
+        ),
+        (
+            LOW,
+            {"gears.gear_teeth": 117},
+            "is still that of the presets, whose gear has 76 teeth",
+        ),
+        (
+            DISCS,
+            {"gears.gear_teeth": 117},
+            "is 22 times lighter than a solid disc of silicon of its size: give gears.density",
         ),
         (ROLLER, {"surface.roughness": 1e-6}, "higher than roller.radius = 5 um"),
     ],

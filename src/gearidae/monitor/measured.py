@@ -191,7 +191,7 @@ def _from_netcdf(source: Path, wanted: Wanted) -> xr.Dataset:
 
 def _from_frame(frame: Any, wanted: Wanted, step: float | None) -> xr.Dataset:
     if not (hasattr(frame, "columns") and hasattr(frame, "reset_index")):
-        raise ValueError("must be a file, a DataFrame, a Dataset or a DataArray")
+        raise ValueError("must be a file or a DataFrame: what is in xarray needs no reading")
     if frame.index.name is not None or frame.index.dtype.kind in "mM":
         frame = frame.rename_axis(frame.index.name or "time").reset_index()
     kinds = [dtype.kind for dtype in frame.dtypes]

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -45,7 +46,7 @@ def frame_from(source: Path) -> pd.DataFrame | None:
         raise ValueError(
             f"is read with {library}, which is not installed: pip install {library}, or save it as CSV"
         ) from None
-    except (OSError, ValueError, KeyError, TypeError, EOFError) as error:
+    except (OSError, ValueError, KeyError, TypeError, EOFError, BadZipFile) as error:
         raise ValueError(f"cannot be read as a {source.suffix.lower()} file ({error})") from None
     if frame.empty:
         raise ValueError("holds no columns of numbers")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 from gearidae.laws.pairs import MESH_LAWS, has_mesh_law, number_of_mesh
 from gearidae.scene import TrainScene
+from gearidae.scene.gears import DISC_FACTOR, SILICON, disc_inertia
 from gearidae.scene.joints import joints
 from gearidae.scene.prefixes import with_prefix
 from gearidae.torques import torque_law
@@ -139,18 +140,25 @@ def _resistance(scene: Scene) -> list[str]:
 
 
 def _inertias(scene: Scene) -> list[str]:
-    """Say that gears of another size have kept the inertias of the presets."""
+    """Say that gears of another size have kept their inertias: those of the presets, or of smaller discs."""
     gears, lines = scene.gears, []
     if gears is None:
         return []
-    for name, inertia, teeth in _KEPT:
+    radii = scene.geometry.base_radius_pinion, scene.geometry.base_radius_gear
+    for (name, kept, teeth), radius in zip(_KEPT, radii, strict=True):
+        inertia = getattr(gears, f"{name}_inertia")
+        disc = disc_inertia(SILICON, gears.face_width, radius, gears.pressure_angle)
         size = (getattr(gears, f"{name}_teeth"), gears.pinion_base_radius, gears.face_width)
-        if getattr(gears, f"{name}_inertia") == inertia and size != (teeth, *_KEPT_SIZE):
+        if inertia == kept and size != (teeth, *_KEPT_SIZE):
             words = f"is still that of the presets, whose {name} has {teeth} teeth and another size"
-            lines.append(
-                f"gears.{name}_inertia = {with_prefix(inertia, 'kg m^2')} {words}: give gears.density in place of both"
-                " inertias, or that of this gear"
-            )
+        elif inertia != kept and disc > DISC_FACTOR * inertia:
+            words = f"is {disc / inertia:.2g} times lighter than a solid disc of silicon of its size"
+        else:
+            continue
+        lines.append(
+            f"gears.{name}_inertia = {with_prefix(inertia, 'kg m^2')} {words}: give gears.density in place of both"
+            " inertias, or that of this gear"
+        )
     return lines
 
 

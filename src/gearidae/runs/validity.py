@@ -36,7 +36,7 @@ from gearidae.runs.rubbing import locking_rows
 from gearidae.runs.train_statics import stages
 from gearidae.runs.yielding import yielding_row
 from gearidae.scene import TrainScene
-from gearidae.scene.gears import disc_inertia
+from gearidae.scene.gears import DISC_FACTOR, SILICON, disc_inertia
 from gearidae.scene.orbit import has_orbit, journal_speeds
 from gearidae.scene.pitch_errors import has_pitch_errors, rms_of_sums
 from gearidae.scene.prefixes import with_prefix
@@ -53,8 +53,6 @@ _SPACINGS: Final = 0.165e-9, 0.3e-9
 """Range of the equilibrium spacing of atoms, for the Tabor parameter [m]."""
 _LITTLE_DAMPING: Final = 0.1
 """Damping ratio below which the air leaves an impact response as it is."""
-_SILICON: Final = 2330.0
-"""Density of silicon [kg/m^3]: discs of base radius and face width are made of it."""
 _CLEARANCE: Final = 2e-6
 """Distance between gear and substrate that the drag of the air is estimated for [m]: a usual sacrificial layer."""
 _USUAL_HAMAKER: Final = 5e-20
@@ -468,9 +466,9 @@ def _inertia(scene: GearScene) -> Iterator[ValidityRow]:
         ("pinion", gears.pinion_inertia, geometry.base_radius_pinion),
         ("gear", gears.gear_inertia, geometry.base_radius_gear),
     ):
-        disc = disc_inertia(_SILICON, gears.face_width, radius, gears.pressure_angle)
+        disc = disc_inertia(SILICON, gears.face_width, radius, gears.pressure_angle)
         times = disc / inertia
-        holds = 1.0 / 3.0 <= times <= 3.0
+        holds = 1.0 / DISC_FACTOR <= times <= DISC_FACTOR
         if holds:
             verdict = "about that of a solid disc"
         elif times > 1.0:

@@ -23,6 +23,11 @@ HubRadius = Annotated[float, Quantity(unit="m", at_least=0, at_most=1, least=1e-
 JointForce = Annotated[float, Quantity(unit="N", at_least=0, at_most=1, shown=("uN", -6))]
 Teeth = Annotated[int, Count(at_least=3, at_most=10_000)]
 
+SILICON: Final = 2330.0
+"""Density of silicon [kg/m^3]."""
+DISC_FACTOR: Final = 3.0
+"""Times that a gear may be as light or as heavy as a solid disc: more is said."""
+
 
 def disc_inertia(density: float, width: float, base_radius: float, pressure_angle: float) -> float:
     """Moment of inertia [kg m^2] of a solid disc as large as a gear's pitch circle.
