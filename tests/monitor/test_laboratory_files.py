@@ -92,6 +92,14 @@ def test_a_row_short_in_the_middle_stays_refused(text, options, file):
         read_signal(file("\n".join(lines)), **options)
 
 
+@pytest.mark.parametrize("columns", [("1 [s]", "2 [rad/s]"), ("X_Value [s]", "Untitled [rad/s]")])
+def test_one_row_of_labview_has_a_comment(columns, file):
+    lines = labview("One").splitlines()
+    lines[-50] += "\tbang"
+    signal = read_signal(file("\n".join(lines)), columns=columns)
+    np.testing.assert_allclose(signal.gear_speed, SPEED, rtol=1e-12)
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [

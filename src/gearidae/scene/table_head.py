@@ -26,6 +26,8 @@ _ROWS_SEEN: Final = 100  # rows from which separator and decimal sign are recogn
 _ROWS_IN_TURN: Final = 5  # with numbers in columns that are given by number
 _NO_CELLS: Final = ("comment", "start", "increment")
 """Last headings of LabVIEW and Rigol, below which most rows or all have no cell."""
+_LABVIEW: Final = "LabVIEW Measurement"
+"""First line of a file of which any row may have a remark, whatever stands above the rows."""
 _MOST_LINES: Final = 100_000  # read above the rows, most of them remarks
 _COMMA_NUMBER: Final = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
 _WHOLE_NUMBER: Final = re.compile(r"[+-]?\d+(?:[eE][+-]?\d+)?")
@@ -117,7 +119,7 @@ def open_table(
         skipped=sum(line.number < (heading or rows[0]).number for line in plain) + (skip or 0) if rows else 0,
         above=above,
         encoding=encoding,
-        remarked=len(headings) == named - 1,
+        remarked=len(headings) == named - 1 or plain[0].text.startswith(_LABVIEW),
         clock=_clock([line.text for line in plain if line.number <= above], between),
     )
 
