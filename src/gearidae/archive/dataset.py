@@ -183,20 +183,29 @@ def combine(
     if exposures:
         coords.update(exposure_coordinates(scene))
     coords = {**coords, **{name: label for name, label in run_label(scene).items() if name not in dims}}
-    done = sum(solution.status == "finished" for solution in solutions)
     return xr.Dataset(
         variables,
         coords=coords,
         attrs={
-            **provenance(scene, f"swept {len(solutions)} runs", swept=tuple(swept)),
-            "swept": json.dumps(dict(swept), allow_nan=False),
+            **sweep_attributes(scene, swept, [solution.status for solution in solutions]),
             **({} if keep.names is None else {"keep": json.dumps(keep.asked)}),
-            "status": "finished" if done == len(solutions) else "partial",
-            "message": "" if done == len(solutions) else f"{done} of {len(solutions)} runs finished",
             **statistics_attributes([solution.statistics for solution in solutions]),
             **surface_regimes(scene),
         },
     )
+
+
+def sweep_attributes(
+    base: Scene, swept: Mapping[str, Sequence[Any]], statuses: Sequence[str]
+) -> dict[str, Any]:
+    """Make the attributes of a sweep that tell what was swept, and how many of its runs are finished."""
+    done, runs = sum(status == "finished" for status in statuses), len(statuses)
+    return {
+        **provenance(base, f"swept {runs} runs", swept=tuple(swept)),
+        "swept": json.dumps(dict(swept), allow_nan=False),
+        "status": "finished" if done == runs else "partial",
+        "message": "" if done == runs else f"{done} of {runs} runs finished",
+    }
 
 
 def _of_runs(

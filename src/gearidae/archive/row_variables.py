@@ -94,18 +94,33 @@ def row_variables(
             values = columns[0] if len(columns) == 1 else np.concatenate(columns)
             values = values.astype(variable.dtype, copy=False)
             made[name] = ((kind.dim,), values, variable.attributes)
-    labels = labels or {}
     counts = [len(getattr(solution, kind.field)) for solution in solutions]
+    add_row_labels(made, kind.dim, labels or {}, counts)
+    return made
+
+
+def add_row_labels(
+    variables: dict[Hashable, Any], rows: str, labels: Mapping[str, xr.Variable], counts: Sequence[int]
+) -> None:
+    """Label every row of a sweep with the run that it belongs to, where a variable does not do so already.
+
+    Parameters
+    ----------
+    variables : dict
+        Gets a variable for each label.
+    rows : str
+        Dimension of the rows.
+    labels : mapping of str to Variable
+        Values of each swept dimension; the last changes fastest.
+    counts : sequence of int
+        Rows of each run.
+    """
     shape = tuple(label.size for label in labels.values())
     for position, (dim, label) in enumerate(labels.items()):
-        if f"{kind.dim}_{dim}" not in made:
-            index = np.unravel_index(np.arange(len(solutions)), shape)[position]
-            attributes = {
-                "long_name": f"{dim} of the run the {kind.dim} belongs to",
-                "units": label.attrs["units"],
-            }
-            made[f"{kind.dim}_{dim}"] = ((kind.dim,), np.repeat(label.values[index], counts), attributes)
-    return made
+        if f"{rows}_{dim}" not in variables:
+            index = np.unravel_index(np.arange(len(counts)), shape)[position]
+            words = {"long_name": f"{dim} of the run the {rows} belongs to", "units": label.attrs["units"]}
+            variables[f"{rows}_{dim}"] = ((rows,), np.repeat(label.values[index], counts), words)
 
 
 def rows_from(run: xr.Dataset, kind: type[Rows]) -> Rows:

@@ -52,8 +52,13 @@ def stack(
     xarray.Dataset
         See `gearidae.sweep`.
     """
-    leaders = {leader: axis[leader] for axis in axes for leader in [next(iter(axis))]}
-    return with_zipped(combine(base, leaders, scenes, solutions, keep=keep, samples=samples), base, axes)
+    ds = combine(base, leaders_of(axes), scenes, solutions, keep=keep, samples=samples)
+    return with_zipped(ds, base, axes)
+
+
+def leaders_of(axes: Sequence[Axis]) -> Axis:
+    """Return the values of the key that labels each axis, the first."""
+    return {leader: axis[leader] for axis in axes for leader in [next(iter(axis))]}
 
 
 def with_zipped(ds: xr.Dataset, base: Scene, axes: Sequence[Axis]) -> xr.Dataset:

@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from gearidae.records import Extremes
     from gearidae.records.train_results import TrainSolution
     from gearidae.scene import TrainScene
+    from gearidae.scene.train import Train
 
 _OF_JUDGED = tuple(name for name in EXTREMES if name not in {*MESH_TOTALS, *SHAFT_TOTALS, "min_separation"})
 
@@ -93,7 +94,7 @@ def train_dataset(
         coords={
             "time": ("time", solution.time, TIME.attributes),
             **run_label(scene),
-            **coordinates(scene),
+            **coordinates(scene.train, judged_shaft(scene)),
         },
         attrs={
             **provenance(scene, f"simulated {solution.reached:g} s"),
@@ -113,9 +114,8 @@ def train_dataset(
     )
 
 
-def coordinates(scene: TrainScene) -> dict[str, Any]:
-    """Labels of the shafts and meshes of a scene."""
-    train, judged = scene.train, scene.train.shafts[judged_shaft(scene)].ratio
+def coordinates(train: Train, judged: int) -> dict[str, Any]:
+    """Label the shafts and meshes of a train, of which the shaft of a number is judged."""
     values: dict[str, list[Any]] = {
         "shaft": [shaft.name for shaft in train.shafts],
         "mesh": [mesh.name for mesh in train.meshes],
@@ -123,7 +123,7 @@ def coordinates(scene: TrainScene) -> dict[str, Any]:
         "mesh_driven": [mesh.driven for mesh in train.meshes],
         "mesh_ratio": [float(mesh.ratio) for mesh in train.meshes],
         "shaft_sense": [shaft.sense for shaft in train.shafts],
-        "shaft_ratio": [float(shaft.ratio / judged) for shaft in train.shafts],
+        "shaft_ratio": [float(shaft.ratio / train.shafts[judged].ratio) for shaft in train.shafts],
     }
     return {
         name: (variable.dims, np.array(values[name], dtype=variable.dtype), variable.attributes)

@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from gearidae.archive.dataset import dimension_names, key_labels
-from gearidae.archive.provenance import provenance
-from gearidae.archive.stack import Axis, with_zipped
+from gearidae.archive.dataset import dimension_names, key_labels, sweep_attributes
+from gearidae.archive.row_variables import add_row_labels
+from gearidae.archive.stack import Axis, leaders_of, with_zipped
 from gearidae.archive.train.dataset import coordinates
 from gearidae.archive.train.variables import ATTRIBUTES, COORDINATES, HELD_BY
 from gearidae.archive.variables import CONTACT, OF_SWEPT_RUN, RUN, SAM_FRACTION, Variable, run_label
+from gearidae.scene.judged import judged_shaft
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene, TrainScene
@@ -46,7 +47,7 @@ def stack_trains(
     xarray.Dataset
         See `gearidae.sweep`.
     """
-    leaders = {leader: axis[leader] for axis in axes for leader in [next(iter(axis))]}
+    leaders = leaders_of(axes)
     names = dimension_names(leaders)
     dims, shape = tuple(names.values()), tuple(len(values) for values in leaders.values())
     labels = {names[key]: key_labels(key, names[key], values) for key, values in leaders.items()}
@@ -74,7 +75,7 @@ def stack_trains(
         over = first[name].dims
         values = (over, parts[0]) if alike else stacked(parts, parts[0].dtype, over)
         coords[name] = (*values, first[name].attrs)
-    variables.update(_event_labels(labels, [member.sizes["event"] for member in members]))
+    add_row_labels(variables, "event", labels, [member.sizes["event"] for member in members])
     for name, known in _OF_RUN.items():
         variables[name] = _column(known, [member.attrs[name] for member in members], dims, shape)
     held = [member.attrs.get("held_by", "") for member in members]
@@ -83,17 +84,12 @@ def stack_trains(
     variables["scene"] = _column(OF_SWEPT_RUN["scene"], inputs, dims, shape)
     if SAM_FRACTION.name not in dims:
         coords.update({**run_label(base)})
-    done = sum(member.attrs["status"] == "finished" for member in members)
-    every = done == len(members)
     drivers = {name: {member.attrs[name] for member in members} - {""} for name in ("backend", "method")}
     ds = xr.Dataset(
         variables,
         coords=coords,
         attrs={
-            **provenance(base, f"swept {len(members)} runs", swept=tuple(leaders)),
-            "swept": json.dumps(leaders, allow_nan=False),
-            "status": "finished" if every else "partial",
-            "message": "" if every else f"{done} of {len(members)} runs finished",
+            **sweep_attributes(base, leaders, [member.attrs["status"] for member in members]),
             **{name: sum(int(member.attrs[name]) for member in members) for name in _TOTALS},
             "wall_time": float(sum(member.attrs["wall_time"] for member in members)),
             **{name: ", ".join(sorted(texts)) for name, texts in drivers.items()},
@@ -111,7 +107,9 @@ def unfinished(like: xr.Dataset, scene: TrainScene) -> xr.Dataset:
     like : xarray.Dataset
         A run of the same sweep that is there.
     """
-    blank = like.isel(time=slice(0), event=slice(0)).assign_coords(coordinates(scene))
+    blank = like.isel(time=slice(0), event=slice(0)).assign_coords(
+        coordinates(scene.train, judged_shaft(scene))
+    )
     for name, variable in blank.data_vars.items():
         kind = variable.dtype.kind
         nothing: Any = math.nan if kind == "f" else 0 if kind in "iub" else "[]"  # texts are lists
@@ -133,15 +131,3 @@ def _column(
     column = np.empty(len(values), dtype=object)
     column[:] = values
     return dims, column.astype(variable.dtype).reshape(shape), variable.attributes
-
-
-def _event_labels(labels: dict[str, xr.Variable], counts: Sequence[int]) -> dict[Hashable, Any]:
-    """Label every event with the run that it belongs to."""
-    shape = tuple(label.size for label in labels.values())
-    places = np.unravel_index(np.arange(len(counts)), shape)
-    made: dict[Hashable, Any] = {}
-    for place, (dim, label) in zip(places, labels.items(), strict=True):
-        if dim != "sam_fraction":  # which every event has
-            words = {"long_name": f"{dim} of the run the event belongs to", "units": label.attrs["units"]}
-            made[f"event_{dim}"] = (("event",), np.repeat(label.values[place], counts), words)
-    return made

@@ -5,6 +5,7 @@ from __future__ import annotations
 import xarray as xr
 
 from gearidae.archive.select import is_train, run_scene
+from gearidae.archive.train.dataset import coordinates
 from gearidae.archive.train.variables import COORDINATES, MESH_TOTALS, SHAFT_TOTALS, TRAIN_SAMPLES
 from gearidae.archive.train.work import MESH_LOSSES
 from gearidae.archive.variables import ENERGY_BALANCE
@@ -89,17 +90,5 @@ def train_form(ds: xr.Dataset) -> xr.Dataset:
     for name in made:
         if name in catalogue:
             view[name].attrs = catalogue[name].attributes
-    values = {
-        "shaft": [shaft.name for shaft in train.shafts],
-        "mesh": [mesh.name for mesh in train.meshes],
-        "mesh_driver": [mesh.driver for mesh in train.meshes],
-        "mesh_driven": [mesh.driven for mesh in train.meshes],
-        "mesh_ratio": [float(mesh.ratio) for mesh in train.meshes],
-        "shaft_sense": [shaft.sense for shaft in train.shafts],
-        "shaft_ratio": [float(shaft.ratio / train.shafts[-1].ratio) for shaft in train.shafts],
-    }
-    labels = {
-        name: (variable.dims, values[name], variable.attributes) for name, variable in COORDINATES.items()
-    }
     names = {"judged_shaft": "gear", "judged_mesh": "mesh", "drive_shaft": "pinion"}
-    return view.assign_coords(labels).assign_attrs(names)
+    return view.assign_coords(coordinates(train, train.load)).assign_attrs(names)
