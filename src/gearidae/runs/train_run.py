@@ -48,8 +48,6 @@ def simulate_train(
     for name, value in others.items():
         if value is not None and value is not False:
             raise SceneError(name, type(value).__name__, "is not for a train of several meshes: leave it out")
-    if scene.run.samples == "ringing":
-        raise SceneError("run.samples", "ringing", "must be a number or a rate in a train of several meshes")
     log_doubts(scene)
     if archive is None:
         return _ended(_run(scene, backend, progress))

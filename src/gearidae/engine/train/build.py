@@ -72,8 +72,7 @@ def make_train(scene: TrainScene) -> TrainProblem:
     make_part_ready(TRAIN)
     train = scene.train
     _refuse(scene, train)
-    pairs = _pairs(scene, train)
-    problems = tuple(make_problem(pair) for pair in pairs)
+    pairs, problems = _pairs(scene, train)
     addresses = tuple(_alone(problem.model) for problem in problems)
     tm = blank_train(len(train.shafts), len(train.meshes))
     _add_meshes(tm, scene, train, problems, addresses)
@@ -102,7 +101,7 @@ def _refuse(scene: TrainScene, train: Train) -> None:
         (
             run.samples == "ringing",
             "run.samples",
-            "how its contacts ring is not known before; give a number or a rate",
+            "how its contacts ring is not known before: samples must be a number or a rate",
         ),
         (bool(run.checkpoints), "run.checkpoints", "a train keeps no checkpoints yet"),
     )
@@ -123,7 +122,7 @@ def _ends(train: Train) -> tuple[int, int]:
     return drive, load
 
 
-def _pairs(scene: TrainScene, train: Train) -> list[GearScene]:
+def _pairs(scene: TrainScene, train: Train) -> tuple[list[GearScene], tuple[Problem, ...]]:
     """Every mesh as a pair of gears: the first at the drive with its torques, the first at the load with those.
 
     What a pair takes for small depends on its torques; of the others that is the torque of the drive as a rigid train
@@ -134,25 +133,22 @@ def _pairs(scene: TrainScene, train: Train) -> list[GearScene]:
         update={"shaft": None, "orientation": 0.0, "pin_radius": 0.0, "pin_friction": None}
     )
     load = scene.load.model_copy(update={"shaft": None})
-    shares = [train.shafts[mesh.a].ratio / train.shafts[train.drive].ratio for mesh in train.meshes]
-    ends = [
-        _pair(scene, train, k, drive if k == first else Drive(), load if k == last else Load())
-        for k in sorted({first, last})
-    ]
+    shares = [float(train.shafts[mesh.a].ratio / train.shafts[train.drive].ratio) for mesh in train.meshes]
+    pairs, problems = {}, {}
+    for k in {first, last}:
+        pairs[k] = _pair(scene, train, k, drive if k == first else Drive(), load if k == last else Load())
+        problems[k] = make_problem(pairs[k])
     # the largest torque of the drive's shaft that either end stands for
-    torques = [
-        float(make_problem(pair).model.scene.force_unit)
-        * train.meshes[k].geometry.base_radius_pinion
-        * float(shares[k])
-        for k, pair in zip(sorted({first, last}), ends, strict=True)
-    ]
-    inside = [
-        _pair(scene, train, k, Drive(torque=max(torques) / float(shares[k])), Load())
-        for k in range(len(train.meshes))
-    ]
-    for k, pair in zip(sorted({first, last}), ends, strict=True):
-        inside[k] = pair
-    return inside
+    torque = max(
+        float(problem.model.scene.force_unit) * train.meshes[k].geometry.base_radius_pinion * shares[k]
+        for k, problem in problems.items()
+    )
+    for k, share in enumerate(shares):
+        if k not in problems:
+            pairs[k] = _pair(scene, train, k, Drive(torque=torque / share), Load())
+            problems[k] = make_problem(pairs[k])
+    order = range(len(train.meshes))
+    return [pairs[k] for k in order], tuple(problems[k] for k in order)
 
 
 def _pair(scene: TrainScene, train: Train, k: int, drive: Drive, load: Load) -> GearScene:
