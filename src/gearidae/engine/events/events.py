@@ -45,21 +45,33 @@ _TINY: Final = 1e-300
 def guard(m: Model, t: float, y: Floats) -> float:
     """Root function: falls through zero at the first of all possible events.
 
-    Every single guard (a pair's onset or separation, its turning point, full stretch of a material, a mark of the
-    mesh, the dry resistance, a flank coming near, a pair at the cut-off) is positive while it waits, so that the least
-    of them waits for them all. What has happened is disarmed where it is dealt with, and the next in the same step is
-    found in its turn.
+    Every single guard (those of `mesh_guard`, the dry resistance, the stop) is positive while it waits, so that the
+    least of them waits for them all. What has happened is disarmed where it is dealt with, and the next in the same
+    step is found in its turn.
     """
     follow_orbit(m, t)
-    least = mark_guard(m, y)
+    least = mesh_guard(m, t, y)
     if m.scene.stop != 0:
         least = min(least, stop_guard(m, t, y))
     if m.scene.friction.on != 0:
         least = min(least, dry_guard(m, t, y))
-    if m.scene.law_switches != 0:
-        least = min(least, law_guard(m, t, y))
     if m.scene.guarded != 0:
         least = min(least, shaft_guard(m, y))
+    # a guard that stays at exactly zero just after its root would be an error to the root finder; zero counts as
+    # not yet fallen
+    return least if least != 0.0 else _TINY
+
+
+@compiled(inline=True)
+def mesh_guard(m: Model, t: float, y: Floats) -> float:
+    """Least of the guards of a mesh, its pairs and the laws of its shafts.
+
+    They are a pair's onset or separation, its turning point, full stretch of a material, a mark of the mesh, a flank
+    coming near, a pair at the cut-off, and the switch of a torque law.
+    """
+    least = mark_guard(m, y)
+    if m.scene.law_switches != 0:
+        least = min(least, law_guard(m, t, y))
     if watches_cutoff(m):
         least = min(least, cutoff_guard(m, y))
     if m.state.flank_in_reach[COAST] == 0:
@@ -67,15 +79,12 @@ def guard(m: Model, t: float, y: Floats) -> float:
     if m.state.flank_in_reach[DRIVE] == 0:
         least = min(least, nearest_gap(m, DRIVE, y) - m.scene.cutoff)
     if m.scene.population.flanks != 0:
-        least = min(least, asperity_guard(m, y))
-        return least if least != 0.0 else _TINY
+        return min(least, asperity_guard(m, y))
     for i in range(list_known(m, y)):
         k = m.work.known[i]
         gap, rate = gap_and_rate(m, flank_of_history(m, k), m.state.history[k].pair, y)
         least = min(least, pair_guard(m, k, gap, rate, middle_gap(m, k, y, gap)))
-    # a guard that stays at exactly zero just after its root would be an error to the root finder; zero counts as
-    # not yet fallen
-    return least if least != 0.0 else _TINY
+    return least
 
 
 @compiled

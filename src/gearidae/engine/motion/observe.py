@@ -21,10 +21,10 @@ from gearidae.engine.pairs.mesh_error import pinion_speed
 from gearidae.engine.pairs.shaft_angle import angle_of_shaft, torque_angle
 from gearidae.engine.pairs.tooth_pairs import (
     all_pairs,
+    flank_gaps,
     gap_and_rate,
     history_of,
     pair_at,
-    pair_gap,
     rigid_separation,
 )
 from gearidae.laws.pair_law import in_reach
@@ -77,17 +77,7 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
     else:
         resistance = contact
     row[GEAR.gear_contact_torque] = radius * contact * m.scene.force_unit
-    drive_gap = coast_gap = math.inf
-    touching = 0
-    reach = all_pairs(m, y)
-    for i in range(reach.total):
-        coast, pair = pair_at(reach, i)
-        gap, _, _, _ = pair_gap(m, coast, pair, u, v, phase, w)
-        if coast:
-            coast_gap = min(coast_gap, gap)
-        else:
-            drive_gap = min(drive_gap, gap)
-        touching += gap < m.scene.contact_gap
+    drive_gap, coast_gap, touching = flank_gaps(m, y)
     row[GEAR.drive_gap], row[GEAR.coast_gap] = drive_gap * length, coast_gap * length
     row[GEAR.pairs_in_contact] = touching
     unit = m.scene.force_unit

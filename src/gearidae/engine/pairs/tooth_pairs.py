@@ -303,6 +303,22 @@ def length_at(pinion: float, sum_curvature: float) -> float:
 
 
 @compiled
+def flank_gaps(m: Model, y: Floats) -> tuple[float, float, int]:
+    """Smallest gaps of the drive and the coast flank, scaled, and number of pairs in contact."""
+    drive_gap = coast_gap = math.inf
+    touching, reach = 0, all_pairs(m, y)
+    for i in range(reach.total):
+        coast, pair = pair_at(reach, i)
+        gap = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])[0]
+        if coast:
+            coast_gap = min(coast_gap, gap)
+        else:
+            drive_gap = min(drive_gap, gap)
+        touching += gap < m.scene.contact_gap
+    return drive_gap, coast_gap, touching
+
+
+@compiled
 def rigid_separation(m: Model, u: float, phase: float) -> float:
     """Distance of the nearer flank of pairs on the path of contact; with errors of teeth that of the nearest pair."""
     if m.scene.pitch_errors == 0:

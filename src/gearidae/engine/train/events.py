@@ -13,22 +13,21 @@ from typing import Final
 from gearidae.arrays import Floats
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import TRAIN
-from gearidae.engine.events.cutoff import begin_within, cutoff_guard, note_within, watches_cutoff
+from gearidae.engine.events.cutoff import begin_within, note_within, watches_cutoff
+from gearidae.engine.events.events import mesh_guard
 from gearidae.engine.events.histories import accept
-from gearidae.engine.events.law_switches import law_guard, laws_chatter, note_law_jump, set_law_sides
-from gearidae.engine.events.mesh_marks import cross_mark, crossed_mark, mark_guard, relief_step
-from gearidae.engine.events.pair_events import find_event, pair_guard, take_event
+from gearidae.engine.events.law_switches import laws_chatter, note_law_jump, set_law_sides
+from gearidae.engine.events.mesh_marks import cross_mark, crossed_mark, relief_step
+from gearidae.engine.events.pair_events import find_event, take_event
 from gearidae.engine.events.stops import next_stop, pass_knot
 from gearidae.engine.integrate.driver import LAW_CHATTER
 from gearidae.engine.model.addresses import model_at
-from gearidae.engine.model.state import COAST, DRIVE, EMPTY, Model, W
+from gearidae.engine.model.state import EMPTY, Model, W
 from gearidae.engine.observers import adhesion_loss
 from gearidae.engine.pairs.tooth_pairs import (
     flank_of_history,
-    gap_and_rate,
     in_flight,
     list_known,
-    nearest_gap,
 )
 from gearidae.engine.train.layout import TrainModel, TrainOutput
 from gearidae.engine.train.motion import mesh_state, motion
@@ -43,25 +42,6 @@ SAME: Final = 1e-13
 """Of the time: knots of drive and load that are one have times in the units of two meshes."""
 FALLEN_AT_ONCE: Final = 4
 """Guards that one after the other fall at the same time, at most: what has been dealt with may let others fall."""
-
-
-@compiled
-def _mesh_guard(m: Model, t: float, y: Floats) -> float:
-    """Least of the guards of a mesh and its pairs, see `gearidae.engine.events.events.guard`."""
-    least = mark_guard(m, y)
-    if watches_cutoff(m):
-        least = min(least, cutoff_guard(m, y))
-    if m.state.flank_in_reach[COAST] == 0:
-        least = min(least, nearest_gap(m, COAST, y) - m.scene.cutoff)
-    if m.state.flank_in_reach[DRIVE] == 0:
-        least = min(least, nearest_gap(m, DRIVE, y) - m.scene.cutoff)
-    if m.scene.law_switches != 0:
-        least = min(least, law_guard(m, t, y))
-    for i in range(list_known(m, y)):
-        k = m.work.known[i]
-        gap, rate = gap_and_rate(m, flank_of_history(m, k), m.state.history[k].pair, y)
-        least = min(least, pair_guard(m, k, gap, rate, gap))
-    return least
 
 
 @compiled_once(TRAIN)
@@ -79,7 +59,7 @@ def train_guard(tm: TrainModel, t: float, y: Floats, evaluated: bool) -> float:
         mesh = tm.meshes[k]
         m = model_at(mesh.place)
         mesh_state(tm, k, m, y, tm.own)
-        least = min(least, _mesh_guard(m, t / mesh.time_unit, tm.own))
+        least = min(least, mesh_guard(m, t / mesh.time_unit, tm.own))
     if not evaluated and any_held(tm):
         motion(tm, t, y, tm.rates[15])
     least = min(least, rest_guard(tm, y), train.stop_pitches - abs(y[train.load] + train.turns))

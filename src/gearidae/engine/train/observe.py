@@ -9,9 +9,9 @@ from gearidae.arrays import Floats
 from gearidae.compiled import compiled
 from gearidae.engine.laws.pairs import stored_energy
 from gearidae.engine.model.addresses import model_at
-from gearidae.engine.model.state import PHASE, Model, U, V, W
+from gearidae.engine.model.state import PHASE, U
 from gearidae.engine.observers.adhesion_loss import joining_lag
-from gearidae.engine.pairs.tooth_pairs import all_pairs, pair_at, pair_gap, rigid_separation
+from gearidae.engine.pairs.tooth_pairs import flank_gaps, rigid_separation
 from gearidae.engine.train.formula import state_at
 from gearidae.engine.train.layout import OF_MESH, OF_SHAFT, OF_TRAIN, TrainModel
 from gearidae.engine.train.motion import mesh_state, motion
@@ -31,22 +31,6 @@ _GOLDEN: Final = 0.5 * (math.sqrt(5.0) - 1.0)
 
 
 @compiled
-def _gaps(m: Model, y: Floats) -> tuple[float, float, int]:
-    """Smallest gaps of both flanks, and pairs in contact; scaled."""
-    drive_gap = coast_gap = math.inf
-    touching, reach = 0, all_pairs(m, y)
-    for i in range(reach.total):
-        coast, pair = pair_at(reach, i)
-        gap = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])[0]
-        if coast:
-            coast_gap = min(coast_gap, gap)
-        else:
-            drive_gap = min(drive_gap, gap)
-        touching += gap < m.scene.contact_gap
-    return drive_gap, coast_gap, touching
-
-
-@compiled
 def observe_train(tm: TrainModel, t: float, y: Floats, row: Floats) -> None:
     """Write one sample at a time [s], with the histories as they are; see `gearidae.records.train_results`."""
     train, n, at = tm.train[0], len(tm.shafts), 0
@@ -62,7 +46,7 @@ def observe_train(tm: TrainModel, t: float, y: Floats, row: Floats) -> None:
         mesh = tm.meshes[k]
         m = model_at(mesh.place)
         mesh_state(tm, k, m, y, tm.own)
-        drive, coast, touching = _gaps(m, tm.own)
+        drive, coast, touching = flank_gaps(m, tm.own)
         row[at], row[at + 1] = mesh.force, mesh.error
         row[at + 2], row[at + 3] = drive * mesh.length_unit, coast * mesh.length_unit
         row[at + 4] = touching
