@@ -32,7 +32,7 @@ from gearidae.engine.integrate.roots import SHARPNESS, Arrays, Stepper, state_fo
 from gearidae.engine.model.addresses import model_at
 from gearidae.engine.model.state import MOTION, Floats, Model
 from gearidae.engine.motion.static_solve import fold_gap
-from gearidae.engine.observers.standing.judge import STICKS
+from gearidae.engine.observers.standing.judge import STICKS, STOP_STEPS
 from gearidae.engine.setup.problem import Problem
 from gearidae.engine.step import advance
 from gearidae.engine.sundials import names as sun
@@ -41,8 +41,6 @@ from gearidae.records import Statistics
 
 FIRST_STEPS = 1_000
 """Steps of the first block, before it is known what a step costs; of elastic bodies and discrete asperities, one."""
-STOP_STEPS = 1_000
-"""Of a block at most of a run that is to stop where it sticks, which is asked at its end."""
 GROWTH_HIGH = 50
 """By how much a block may have more steps than the one before."""
 

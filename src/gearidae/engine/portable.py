@@ -49,13 +49,12 @@ from gearidae.engine.model.state import Floats, Model, Record
 from gearidae.engine.model.work_record import MOST_LEAVINGS
 from gearidae.engine.motion.block_jacobian import dense_jacobian, store_size
 from gearidae.engine.motion.static_solve import fold_gap
+from gearidae.engine.observers.standing.judge import STOP_STEPS
 from gearidae.engine.setup.problem import Problem
 from gearidae.engine.step import has_room, prepare_restart, prepare_start
 from gearidae.errors import SceneError
 from gearidae.records import Statistics
 
-STOP_STEPS = 1_000
-"""After so many steps a run that is to stop where it sticks is asked."""
 STATES_HIGH = 600
 """States at most: the Jacobian is a full matrix here."""
 _POINTS = 6  # number of former returns used by an interpolation

@@ -23,6 +23,7 @@ from gearidae.arrays import Floats
 from gearidae.engine.model.state import Model
 from gearidae.engine.observers.standing.torques import drive_at, drive_between, free_acceleration, rest_of
 from gearidae.formulas.interpolation import cubic, turning_point
+from gearidae.formulas.roots import zero_of_cubic
 from gearidae.records.standing import GROWS
 
 RTOL: Final = 3e-7
@@ -42,6 +43,8 @@ MANY_KNOTS: Final = 64
 """and fewer between so many knots."""
 _STOP_SPAN: Final = 1.5
 """Of the time after which they have stopped, the next window: what lies behind the stop has been for nothing."""
+_HALVINGS: Final = 60
+"""Of a piece of motion: a time in it is then known to the last bit."""
 SHORTEST: Final = 1e-8
 """Share of the time of all runs of a chain that a piece of motion has at least: a bound on the work."""
 _ONE_AT_A_TIME: Final = threading.Lock()
@@ -210,7 +213,7 @@ class FreeGears:
         if i == 0:
             return self._times[0]
         low, high = self._times[i - 1] * self._unit, self._times[i] * self._unit
-        for _ in range(60):
+        for _ in range(_HALVINGS):
             middle = 0.5 * (low + high)
             low, high = (low, middle) if self.until(middle).farthest >= distance else (middle, high)
         return high / self._unit
@@ -281,12 +284,8 @@ class FreeGears:
         part = times[k + 1] - times[k]
         ends = [(*y[j].tolist(), rates(low + times[j], y[j])[1]) for j in (k, k + 1)]
         (x0, v0, a0), (x1, v1, a1) = ends
-        a, b = 0.0, 1.0
-        for _ in range(60):
-            middle = 0.5 * (a + b)
-            moves = cubic(middle, part, v0, a0, v1, a1) * sign > 0.0
-            a, b = (middle, b) if moves else (a, middle)
-        return float(times[k] + b * part) / h, cubic(b, part, x0, v0, x1, v1)
+        stop = zero_of_cubic(0.0, 1.0, _HALVINGS, 0.0, sign, part, v0, a0, v1, a1)[1]
+        return float(times[k] + stop * part) / h, cubic(stop, part, x0, v0, x1, v1)
 
     def _add(self, times: list[float], travels: list[float], speeds: list[float]) -> None:
         """Add what is known of them at some times over tau."""
@@ -311,9 +310,8 @@ class FreeGears:
         from scipy.integrate import ODEintWarning, odeint  # a tenth of a second, and most runs need it not
 
         with _ONE_AT_A_TIME, warnings.catch_warnings():
-            warnings.simplefilter(
-                "ignore", ODEintWarning
-            )  # more steps than wanted: the window is made shorter
+            # of more steps than wanted: the window is then made shorter
+            warnings.simplefilter("ignore", ODEintWarning)
             y, told = odeint(
                 rates,
                 start,

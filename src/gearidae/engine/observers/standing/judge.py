@@ -20,6 +20,8 @@ from gearidae.laws.shaft.schedule import segment_ends
 from gearidae.records.standing import GROWS, NOTICED, SETTLED_WITHIN, SHARE, stands
 
 STICKS: Final = STOPS.index("sticks")
+STOP_STEPS: Final = 1_000
+"""Steps at most after which the judge of a run that is to stop where it sticks is asked."""
 
 
 class Standstill(NamedTuple):
@@ -37,9 +39,7 @@ class Standstill(NamedTuple):
     settled: int
 
 
-_NOWHERE: Final = Standstill(
-    *(math.nan, math.nan, math.nan, math.nan, math.nan, math.nan, math.nan, math.nan, math.nan), 0
-)
+_NOWHERE: Final = Standstill._make([math.nan] * 9 + [0])
 
 
 class Stood:

@@ -222,19 +222,11 @@ def drive_at(place: int, piece: tuple[float, float], t: float, at: tuple[float, 
 
 
 @compiled
-def bound_of_excess(
-    place: int, piece: tuple[float, float], t: float, to: float, at: tuple[float, float]
-) -> float:
-    """Bound of the excess at rest over a time in which schedules go one way, with all harmonics at their amplitudes.
-
-    Of a law the bound is that of its present value. Arguments as for `rest_of`.
-    """
-    m = model_at(place)
-    kept = _enter_piece(m, piece[0], piece[1])
-    low, high = driving_range(m, DRIVE, t, to, _angle(m, DRIVE, at[0], at[1]))
+def _bound_of_excess(m: Model, t: float, at: tuple[float, float]) -> float:
+    """Bound of the excess at rest at a time: harmonics have their amplitudes, laws their present values."""
+    low, high = driving_range(m, DRIVE, t, t, _angle(m, DRIVE, at[0], at[1]))
     held = _acting(m, t, at[0], at[1], 0.0)
-    load = driving_range(m, LOAD, t, to, _angle(m, LOAD, at[0], 0.0))[0] if m.scene.dry != 0 else 0.0
-    _go_back(m, kept)
+    load = driving_range(m, LOAD, t, t, _angle(m, LOAD, at[0], 0.0))[0] if m.scene.dry != 0 else 0.0
     return max(abs(low + held), abs(high + held)) - max(load, 0.0)
 
 
@@ -242,17 +234,17 @@ def bound_of_excess(
 def hardest_in(
     place: int, piece: tuple[float, float], t: float, to: float, at: tuple[float, float]
 ) -> tuple[float, float]:
-    """Time at which the drive exceeds the load most, and by how much at most then; likewise."""
+    """Time at which the drive exceeds the load most, and by how much at most then; arguments as for `rest_of`."""
     m = model_at(place)
+    kept = _enter_piece(m, piece[0], piece[1])
     longest = math.inf
     if m.scene.free_step > 0.0:
         longest = max(m.scene.free_step, (m.scene.end - m.scene.start) / LOOKS_AHEAD)
-    most, time = bound_of_excess(place, piece, t, t, at), t
+    most, time = _bound_of_excess(m, t, at), t
     while t < to:
-        kept = _enter_piece(m, piece[0], piece[1])
         t = min(straight_until(m, t, to), t + longest)
-        _go_back(m, kept)
-        size = bound_of_excess(place, piece, t, t, at)
+        size = _bound_of_excess(m, t, at)
         if size > most + 1e-9 * abs(most):
             most, time = size, t
+    _go_back(m, kept)
     return time, most

@@ -72,7 +72,10 @@ def standing_now(m: Model, judge: Judge, time: float, y: Floats) -> dict[str, An
 
 
 def _counts(standstill: Standstill, until: float) -> bool:
-    """Whether a standstill that has ended is one of a chain so far: its hundredth has grown since it was noted."""
+    """Whether a standstill that has ended is one of a chain that lasts until now.
+
+    A share of the chain is what a standstill takes at least, and that has grown since the standstill was noted.
+    """
     return bool(
         standstill.free_advance >= NOTICED or standstill.end - standstill.since > SHARE * until * (1.0 - 1e-9)
     )

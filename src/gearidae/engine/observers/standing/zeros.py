@@ -46,12 +46,6 @@ def make_zero(m: Model, i: int, t: float, position: float, y: Floats, at_start: 
     z.onset = z.excess = z.driven_time = 0.0
 
 
-@compiled
-def copy_zero(m: Model, to: int, i: int) -> None:
-    """Copy a zero to another place."""
-    m.state.standing.zero[to] = m.state.standing.zero[i]
-
-
 @compiled_once(SOLVER)
 def add_zero(m: Model, t: float, position: float, y: Floats, at_start: bool) -> None:
     """Note that the gear's speed is zero at a time over tau; `y` is a state near it."""
@@ -154,7 +148,7 @@ def _most_alike(m: Model) -> int:
 def _drop(m: Model, i: int) -> None:
     s = m.state.standing
     for k in range(i, s.zero_count - 1):
-        copy_zero(m, k, k + 1)
+        s.zero[k] = s.zero[k + 1]
     s.zero_count -= 1
 
 
@@ -165,7 +159,7 @@ def drop_left(m: Model, position: float) -> None:
     for i in range(s.zero_count):
         if abs(position - s.zero[i].position) <= HALF_PITCH:
             if kept < i:
-                copy_zero(m, kept, i)
+                s.zero[kept] = s.zero[i]
             kept += 1
     s.zero_count = kept
 
