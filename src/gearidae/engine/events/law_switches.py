@@ -26,10 +26,10 @@ JUMPS_HIGH: Final = 300
 APART: Final = 12
 """Steps without a jump after which the next is no succession; a start takes as many to reach its step length."""
 _PLACES: Final = (0.0, *sorted(k * 0.5 * (math.sqrt(5.0) - 1.0) % 1.0 for k in range(1, 13)), 1.0)
-"""Shares of a step at which the function of a law's switch is looked at, no two of which are a period of a wave apart
-that all have in common: multiples of the golden section."""
+"""Shares of a step at which the function of a law's switch is evaluated: multiples of the golden section, so that no
+wave has the same phase at all of them."""
 _SECTIONS: Final = 8
-"""Of the golden section, by which a dip between three of them narrows to a fiftieth."""
+"""Steps of a golden-section search: they narrow a dip between three of these places to a fiftieth."""
 _GOLDEN: Final = 0.5 * (3.0 - math.sqrt(5.0))
 
 
@@ -149,7 +149,7 @@ def _returns(
 ) -> bool:
     """Whether the function of a law's switch has another sign within a step than at both ends.
 
-    Three places of which the middle one is nearest to zero are followed down by the golden section.
+    About a place where the function is nearer to zero than at both neighbours, a golden-section search follows it down.
     """
     if m.work.law_side[shaft] == 0.0:
         return False
@@ -160,7 +160,7 @@ def _returns(
             return True
         there = _distance(m, shaft, t, h, _PLACES[i + 1], first, last)
         places = _PLACES[i - 1], _PLACES[i], _PLACES[i + 1]
-        if here < before and here <= there and _dips(m, shaft, t, h, places, first, last):
+        if here < before and here <= there and _dips(m, shaft, t, h, places, here, first, last):
             return True
         before, here = here, there
     return False
@@ -173,12 +173,12 @@ def _dips(
     t: float,
     h: float,
     places: tuple[float, float, float],
+    least: float,
     first: tuple[float, float],
     last: tuple[float, float],
 ) -> bool:
-    """Whether the function is beyond zero near one of three places of a step, the middle one, where it is nearest."""
+    """Whether the function is beyond zero about the middle one of three places, where its distance is the least."""
     low, middle, high = places
-    least = _distance(m, shaft, t, h, middle, first, last)
     for _ in range(_SECTIONS):
         further = high - middle > middle - low
         end = high if further else low
