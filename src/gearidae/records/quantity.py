@@ -178,7 +178,7 @@ def in_si(quantities: Iterable[Quantity], record: Any, scene: Any) -> dict[str, 
             factors[quantity.unit] = quantity.unit.in_si(scene)
         unit = factors[quantity.unit]
         found, number = record[quantity.name], int if quantity.kind == INT else float
-        # a look that does without an array where there is one number: dozens of them, at the end of each run
+        # no array for a single number: there are dozens of them at the end of each run
         values = np.ravel(found).tolist() if quantity.shape else (number(found),)
         for name, value in zip(quantity.names, values, strict=True):
             # the same object for each missing number, so that equal numbers compare equal

@@ -17,15 +17,10 @@ MESH_SAMPLES: Final = ("mesh_force", "transmission_error", "drive_gap", "coast_g
 """Samples of each mesh, shape (meshes, n): the force with the damping of the mesh [N], lengths [m], and a count."""
 COMMON_SAMPLES: Final = ("drive_torque", "load_torque", "pin_load")
 """Samples of the train, shape (n,): [N m], [N m] and [N]."""
-SHAFT_TOTALS: Final = (
-    "min_speed",
-    "max_speed",
-    "hub_loss",
-    "hub_sliding",
-    "resistance_loss",
-    "drag_loss",
-    "rest_time",
-)
+WORKS_OF_SHAFTS: Final = ("hub_loss", "hub_sliding", "resistance_loss", "drag_loss")
+WORKS_OF_MESHES: Final = ("adhesion_loss", "damping_loss", "film_loss", "work_in", "work_out")
+"""Totals that are followed with the energy balance; NaN without it, as all of `ENERGIES` are."""
+SHAFT_TOTALS: Final = ("min_speed", "max_speed", *WORKS_OF_SHAFTS, "rest_time")
 """Totals of each shaft: [rad/s], [J], the load integrated over the way of the hub [N m], [J], [J] and [s]."""
 MESH_TOTALS: Final = (
     "largest_mesh_force",
@@ -34,16 +29,9 @@ MESH_TOTALS: Final = (
     "smallest_mesh_force_time",
     "smallest_separation",
     "mesh_exits",
-    "adhesion_loss",
-    "damping_loss",
-    "film_loss",
-    "work_in",
-    "work_out",
+    *WORKS_OF_MESHES,
 )
-"""Totals of each mesh in SI units: what its driver puts into it, and what its driven gear gets of that, among them."""
-WORKS_OF_SHAFTS: Final = ("hub_loss", "hub_sliding", "resistance_loss", "drag_loss")
-WORKS_OF_MESHES: Final = ("adhesion_loss", "damping_loss", "film_loss", "work_in", "work_out")
-"""Totals that are followed with the energy balance; NaN without it, as all of `ENERGIES` are."""
+"""Totals of each mesh in SI units: ``work_in`` is the work of its driver, ``work_out`` that on its driven gear."""
 ENERGIES: Final = (
     "drive_work",
     "radius_work",
