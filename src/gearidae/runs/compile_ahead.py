@@ -4,6 +4,16 @@ from __future__ import annotations
 
 from typing import Any, Final
 
+from gearidae.engine.beside import LOOP, compile_side_by_side
+from gearidae.engine.compiling import (
+    ELASTIC,
+    EXPOSURES,
+    FRICTION,
+    IMPACTS,
+    POPULATION,
+    SOLVER,
+    compiling,
+)
 from gearidae.engine.train import solve_train
 from gearidae.runs.simulation import simulate
 from gearidae.scene import Scene, TrainScene, preset, require_gears
@@ -63,18 +73,6 @@ def compile() -> None:  # noqa: A001
     >>> import gearidae as gd
     >>> gd.compile()  # doctest: +SKIP
     """
-    # what reads results does without the engine
-    from gearidae.engine.beside import LOOP, compile_side_by_side
-    from gearidae.engine.compiling import (
-        ELASTIC,
-        EXPOSURES,
-        FRICTION,
-        IMPACTS,
-        POPULATION,
-        SOLVER,
-        compiling,
-    )
-
     with compiling("the engine", "for a minute or two"):
         compile_side_by_side((SOLVER, LOOP, ELASTIC, FRICTION, POPULATION, EXPOSURES, IMPACTS))
     for backend in ("auto", "sksundae"):
