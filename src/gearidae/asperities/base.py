@@ -60,7 +60,7 @@ class SurfaceKey:
     at_least, at_most : float
         Bounds, in that unit.
     coated : CoatedKey, optional
-        Of a key that covered flanks have a number of their own for.
+        Of a key for which covered flanks have a number of their own.
     """
 
     name: str
@@ -77,11 +77,13 @@ class Validity(NamedTuple):
 
     Attributes
     ----------
-    name, quantity : str
-        Of the row of the validity, without the material, and what the number is.
+    name : str
+        Of the row of the validity, without the material.
+    quantity : str
+        Meaning of the number.
     number : float
     holds, fails : str
-        Verdicts.
+        Verdicts up to 1 and beyond.
     """
 
     name: str
@@ -108,7 +110,7 @@ class AsperityLaw(ABC):
     """Keys of the table ``surface`` that this law needs, and without which they have no effect."""
 
     keys: ClassVar[tuple[SurfaceKey, ...]] = ()
-    """Keys of a law in this folder; what they are is read from `tip.surface` in `of`."""
+    """Keys of a law in this folder; `of` reads their numbers from `tip.surface`."""
 
     is_feature: ClassVar[bool] = False
     """Whether `gearidae.combinations` lists scenes with it, as ``NAME asperities``."""
@@ -139,13 +141,14 @@ class AsperityLaw(ABC):
 
     @classmethod
     def validity(cls, surface: Any, gap: float) -> Validity | None:
-        """Say how far a law holds on a surface, where flanks rest at a gap of mean planes [m]; None if it always does.
+        """Say how far a law holds on a surface where the flanks rest; None if it always does.
 
         Parameters
         ----------
         surface : Surface
             Of one material of a scene.
         gap : float
+            Of the mean planes at rest [m].
         """
         return None
 

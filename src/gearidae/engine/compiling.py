@@ -39,8 +39,8 @@ FUNCTIONS: Final = {
     ELASTIC: 79,
     POPULATION: 32,
 }
-"""How many functions that are, counted with an empty cache; the other parts are too short to ask. Of the solver, what
-this process compiles beside another: alone it compiles nearly twice as many."""
+"""How many functions that are, counted with an empty cache; the other parts are too short to ask. The number of the
+solver is that of a process with another one beside it; alone, a process compiles nearly twice as many."""
 _QUARTERS: Final = (0.25, 0.5, 0.75)
 """Shares of the functions after which a line says how far it is, where no line can be rewritten."""
 

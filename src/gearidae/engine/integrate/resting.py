@@ -104,7 +104,7 @@ def begin_rest(m: Model, t: float, y: Floats) -> bool:
 
 @compiled_once(FRICTION)
 def put_to_rest(m: Model, t: float, y: Floats) -> bool:
-    """`begin_rest` of what something holds."""
+    """`begin_rest` of gears that something holds."""
     resting = is_at_rest(m, t, y)
     if resting and m.state.hold != AT_REST:
         _settle(m, t, y)
