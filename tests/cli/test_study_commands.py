@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import pytest
 
 import gearidae as gd
+from gearidae.cli import study_commands
 from gearidae.cli.session import app
 from gearidae.cli.study_commands import _kind, _option
 from gearidae.studies.declared import command_help, study_of_command
@@ -52,6 +53,11 @@ def test_an_option_is_a_parameter_of_the_function(command):
         default = inspect.signature(function).parameters[name].default
         assert arguments[name].field_info.default == default
     assert all(argument.parameter.help for name, argument in arguments.items() if name != "*")
+
+
+def test_a_study_that_there_is_not_has_no_command():
+    assert hasattr(study_commands, "hub_life")
+    assert not hasattr(study_commands, "no_such_study")
 
 
 def test_words_call_other_options_as_they_are_written():

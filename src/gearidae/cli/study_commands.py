@@ -74,9 +74,9 @@ _NAME: Final = re.compile(r"(?<!`)`(\w+)`(?!`)")
 
 def __getattr__(name: str) -> App:
     """Make the command of a study; ``-`` in its name is ``_`` here."""
-    if name.startswith("__"):
-        raise AttributeError(name)
     command = name.replace("_", "-")
+    if command not in command_help():
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     study = study_of_command(command)
     app = App(name=command, help=command_help()[command], help_epilogue=epilogue(study.examples))
     app.default(_function(study))

@@ -50,10 +50,16 @@ def command_help() -> dict[str, str]:
 
 
 def study_of_command(command: str) -> Study:
-    """Return the study that a command runs."""
-    wanted = command.replace("-", "_")
-    folder = next(folder for name, folder, _ in _files() if name == wanted)
-    study: Study = import_module(f"{folder}.{wanted}").STUDY
+    """Return the study that a command runs.
+
+    Raises
+    ------
+    KeyError
+        If there is no such command.
+    """
+    name = command.replace("-", "_")
+    folders = {name: folder for name, folder, _ in _files()}
+    study: Study = import_module(f"{folders[name]}.{name}").STUDY
     return study
 
 
