@@ -14,6 +14,7 @@ from gearidae.engine import solve
 from gearidae.populations.first_touch import first_touch
 from gearidae.studies import _starting_seeds, starting_ramp
 from gearidae.studies._starting_seeds import quantiles
+from gearidae.studies.products import answer, kind_of
 from reference.population import Contact, Tip
 
 GEARS = gd.preset("teodorescu2009").replace({"contact.roughness": "discrete", "load.torque": 0.0})
@@ -151,6 +152,9 @@ def test_bare_teeth_hold_more_and_dry_resistance_adds_to_them():
     assert (free.not_started == 0.0).all()
     dry = gd.studies.starting_torque(BARE.replace({"load.torque": 0.4 * bare}), seeds=1)
     assert float(dry.starting_torque[0, 0]) == pytest.approx(1.1 * bare, rel=0.1, abs=0)
+    said = answer(dry, kind_of(dry))
+    assert said.sentence.startswith("SAM 0 %: one gear of this design starts at ")
+    assert said.rows[0][0] == "Starting torque of 1 gear, SAM 0 %"
 
 
 @pytest.mark.by_hand

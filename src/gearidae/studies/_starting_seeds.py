@@ -19,7 +19,7 @@ from gearidae.runs.run_cache import RunCache
 from gearidae.runs.running import failure_of
 from gearidae.scene.joints import ages
 from gearidae.studies.declared.starting_torque import SEEDS, SLOW_ENOUGH, coordinate
-from gearidae.studies.specimens import POPULATION, gears_of, seeds_that_draw
+from gearidae.studies.specimens import POPULATION, gears_of, gears_text, seeds_that_draw
 from gearidae.studies.starting_parts import PARTS, parts_of
 from gearidae.studies.starting_ramp import (
     RESTS,
@@ -236,7 +236,7 @@ def _dataset(
     values = {name: np.asarray(column) for name, column in _columns(designs).items()}
     attributes = {
         **provenance(base, "found starting torques of a population", swept=seeds_that_draw(base)),
-        "title": f"{base.name}: starting torque of {len(numbers)} gears",
+        "title": f"{base.name}: starting torque of {gears_text(len(numbers))}",
         "summary": _SUMMARY,
         "drive_torque": base.drive.torque,
     }

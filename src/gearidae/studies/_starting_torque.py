@@ -34,7 +34,7 @@ from gearidae.studies.declared.starting_torque import (
     coordinate,
 )
 from gearidae.studies.requirements import require_constant
-from gearidae.studies.specimens import gears_of, seed_of, seeds_that_draw
+from gearidae.studies.specimens import gears_of, gears_text, seed_of, seeds_that_draw
 from gearidae.studies.starting_parts import PARTS, Starting, parts_of
 from gearidae.studies.starting_ramp import nothing_followed, pitch_of
 from gearidae.studies.train_starting import part_names, require_static, static_start, train_parts
@@ -317,7 +317,7 @@ def _torques_of_gears(
             **provenance(
                 scene, "searched starting torques of gears", swept=(COVERAGE_KEY, *seeds_that_draw(base))
             ),
-            "title": f"{scene.name}: starting torque of {len(gears)} gears",
+            "title": f"{scene.name}: starting torque of {gears_text(len(gears))}",
             "summary": "Smallest drive torques that keep gears of one design turning against adhesion.",
             "drive_torque": drive,
             "impacts": impacts,

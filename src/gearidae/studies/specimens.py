@@ -22,6 +22,11 @@ NEEDS: Final = {
 """Of each key of seeds, what it takes that something is drawn by it."""
 
 
+def gears_text(count: int) -> str:
+    """Write a number of gears."""
+    return "1 gear" if count == 1 else f"{count} gears"
+
+
 def seeds_that_draw(scene: Scene) -> tuple[str, ...]:
     """Keys of seeds by which something is drawn: a population, errors of teeth."""
     draws = {

@@ -19,6 +19,7 @@ from gearidae.archive.variables import COVERAGE_KEY, SAM_FRACTION
 from gearidae.errors import SceneError
 from gearidae.scene.pairs import sweep_values
 from gearidae.scene.prefixes import with_prefix
+from gearidae.studies.specimens import gears_text
 from gearidae.studies.study import Column, Option, Picture, Rows, Study
 
 if TYPE_CHECKING:
@@ -65,9 +66,9 @@ def _announced(
     coatings = "own coating" if sam_fraction == "own" else f"{len(sam_fraction)} fractions of the coating"
     coatings += "" if rest_time is None else f", {len(rest_time)} times at rest"
     if not scene.contact.is_discrete:
-        each = "" if seeds is None else f"{seeds} gears, "
+        each = "" if seeds is None else f"{gears_text(seeds)}, "
         return f"{each}{coatings}; one torque is tried after the other"
-    return f"{seeds or SEEDS} gears, {coatings}; each is run several times, with a torque that rises slowly"
+    return f"{gears_text(seeds or SEEDS)}, {coatings}; each is run several times, with a torque that rises slowly"
 
 
 def _train_sentence(ds: xr.Dataset) -> str:
@@ -130,7 +131,7 @@ def _points(ds: xr.Dataset) -> list[tuple[str, xr.Dataset]]:
         points = [ds.isel(rest_time=number) for number in range(ds.sizes["rest_time"])]
         return [(f"after {_time(float(point['rest_time']))} at rest", point) for point in points]
     points = [ds.isel(sam_fraction=number) for number in range(ds.sizes["sam_fraction"])]
-    return [(coverage_text(float(point[_ALONG[0]])), point) for point in points]
+    return [(coverage_text(float(point["sam_fraction"])), point) for point in points]
 
 
 def _rows(ds: xr.Dataset) -> Rows:
@@ -172,25 +173,29 @@ def _gears_sentence(ds: xr.Dataset) -> str:
     longest = -ds["rest_time"] if "rest_time" in ds.dims else ds["sam_fraction"]
     name, worst = _points(ds)[int(np.argmin(longest.values))]
     count, middle = _followed(worst), _torque(worst["quantiles"].sel(quantile=0.5), worst)
-    sentence = (
-        f"{name[0].upper()}{name[1:]}: half of {count} gears of this design start at {middle} on the pinion"
-    )
+    sentence = f"{name[0].upper()}{name[1:]}: {_half(count)} at {middle} on the pinion"
     drive = float(ds.attrs.get("drive_torque", math.nan))
     if not drive > 0.0:
         return f"{sentence}."
     started = int(worst["starts"].sum())
-    return f"{sentence}; the drive's own {with_prefix(drive, 'N m', 4)} starts {started} of them."
+    how_many = f"starts {started} of them"
+    if count == 1:
+        how_many = "starts it" if started else "does not start it"
+    return f"{sentence}; the drive's own {with_prefix(drive, 'N m', 4)} {how_many}."
+
+
+def _half(count: int) -> str:
+    """Begin a sentence about the median of some gears."""
+    return "one gear of this design starts" if count == 1 else f"half of {count} gears of this design start"
 
 
 def _teeth_sentence(ds: xr.Dataset) -> str:
     """Say what the gears of the worst coverage need."""
-    worst = ds.isel(sam_fraction=int(np.argmin(ds["sam_fraction"].values)))
+    coated, worst = _points(ds)[int(np.argmin(ds["sam_fraction"].values))]
     low, middle, high = (_found(value) for value in worst["quantiles"].values.tolist())
-    coated = coverage_text(float(worst[_ALONG[0]]))
-    return (
-        f"{coated}: half of {_followed_teeth(worst)} gears of this design start at {middle} on the pinion, 80 % of "
-        f"them between {low} and {high}."
-    )
+    count = _followed_teeth(worst)
+    spread = "" if count == 1 else f", 80 % of them between {low} and {high}"
+    return f"{coated}: {_half(count)} at {middle} on the pinion{spread}."
 
 
 def _followed_teeth(point: xr.Dataset) -> int:
@@ -204,10 +209,9 @@ def _found(torque: float) -> str:
 def _teeth_rows(ds: xr.Dataset) -> Rows:
     """Quantiles, chance and failures at each coverage."""
     drive = float(ds.attrs["drive_torque"])
-    for number in range(ds.sizes["sam_fraction"]):
-        point = ds.isel(sam_fraction=number)
+    for name, point in _points(ds):
         count = _followed_teeth(point)
-        yield f"Starting torque of {count} gears, {coverage_text(float(point[_ALONG[0]]))}", "", ""
+        yield f"Starting torque of {gears_text(count)}, {name}", "", ""
         for share, torque in zip(
             point["quantile"].values.tolist(), point["quantiles"].values.tolist(), strict=True
         ):
@@ -225,7 +229,7 @@ def _gears_rows(ds: xr.Dataset) -> Rows:
     drive = float(ds.attrs.get("drive_torque", math.nan))
     for name, point in _points(ds):
         count = _followed(point)
-        yield f"Starting torque of {count} gears, {name}", "", ""
+        yield f"Starting torque of {gears_text(count)}, {name}", "", ""
         for share in point["quantile"].values.tolist():
             below = f"{100.0 * share:.0f} % of the gears start below"
             yield below, _torque(point["quantiles"].sel(quantile=share), point), ""
@@ -305,7 +309,7 @@ def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     from gearidae.drawing.style import label_axis
 
     STUDY.require(ds)
-    along = parameter_axis(ds[_ALONG[0]])
+    along = parameter_axis(ds["sam_fraction"])
     percent = along.places
     ax = _torques_over(ds, percent, ax)
     ax.set_yscale("log")
@@ -468,7 +472,7 @@ def _distribution(ds: xr.Dataset, ax: Axes | None) -> Axes:
     ax.xaxis.set_minor_formatter(NullFormatter())
     ax.set_ylim(0.0, 1.02)
     label_axis(ax.xaxis, _TORQUE_WORDS, "N m")
-    ax.set_ylabel(f"share of {count} gears")
+    ax.set_ylabel(f"share of {gears_text(count)}")
     tidy(ax)
     if ds.attrs.get("drive_torque", 0.0) > 0.0:
         mark_value(ax.axvline, ds.attrs["drive_torque"], _OWN)

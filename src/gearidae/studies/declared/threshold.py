@@ -25,7 +25,7 @@ from gearidae.scene.keys import find_key
 from gearidae.scene.pairs import sweep_values
 from gearidae.scene.quantity import number, whole
 from gearidae.studies.bracket import bracket
-from gearidae.studies.specimens import gears_of, seed_of, seeds_that_draw
+from gearidae.studies.specimens import gears_of, gears_text, seed_of, seeds_that_draw
 from gearidae.studies.study import Column, Option, Picture, Rows, Study
 from gearidae.studies.threshold_run import ThresholdRun, run_until, value_of
 
@@ -333,7 +333,7 @@ def _dataset_of_gears(
     attributes = {
         **found[0].attrs,
         **provenance(scene, "searched sticking thresholds", swept=(over, *seeds_that_draw(scene))),
-        "title": f"{scene.name}: sticking thresholds of {len(gears)} gears",
+        "title": f"{scene.name}: sticking thresholds of {gears_text(len(gears))}",
         "summary": f"Limits of {over} at which gears of one design begin to stick, against mesh exits waited for.",
         "left_out": sum(int(one.attrs["left_out"]) for one in found),
     }
@@ -381,7 +381,7 @@ def _announced(
     _: Scene, __: int | None, *, over: str, between: tuple[Any, Any], exits: int, seeds: int | None
 ) -> str:
     words = f"{over} between {between[0]} and {between[1]}, for up to {exits} mesh exits"
-    return words if seeds is None else f"{words}, of {seeds} gears"
+    return words if seeds is None else f"{words}, of {gears_text(seeds)}"
 
 
 def _sentence(ds: xr.Dataset) -> str:
@@ -546,7 +546,7 @@ def picture_of_gears(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     along = parameter_axis(together.rename(_key(ds).rpartition(".")[2]).assign_attrs(ds["limit"].attrs))
     *gears, mean = along.places
     lines = ax.plot(exits, np.transpose(gears), color="0.7", marker=".", linewidth=line_width(0.7))
-    lines[0].set_label(f"{len(gears)} gears")
+    lines[0].set_label(gears_text(len(gears)))
     colour = line_colour(0)
     ax.errorbar(
         exits,
