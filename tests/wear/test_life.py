@@ -163,7 +163,7 @@ def test_coverage_along_the_flank():
     np.testing.assert_allclose(by_place[0], 0.7)
     assert float(by_place[-1].max() - by_place[-1].min()) > 1e-3  # it does not go evenly
     np.testing.assert_allclose(by_place.mean("place"), life.coverage.isel(side=0), rtol=1e-12)
-    assert gd.plot.coverage_along_flank(life).get_xlabel()
+    assert gd.plot.coverage_along_flank(life).get_xlabel() == "place along the path of contact (µm)"
 
 
 def test_both_sides_of_independent_ones():
@@ -221,6 +221,11 @@ def test_each_tooth_has_its_own_share():
 def test_the_picture(short):
     ax = gd.plot.life(short)
     np.testing.assert_allclose(ax.lines[0].get_ydata(), 100 * short.coverage[:, 0])
+    assert ax.get_ylabel() == "coverage (%)"
+    ringing = short.assign(characteristic_frequency=("passages", [1300.0, 2600.0]))
+    _, right = gd.plot.life(ringing).figure.axes
+    assert right.get_ylabel() == "characteristic frequency (kHz)"
+    assert right.yaxis.get_major_formatter()(1300.0) == "1.3"
     with pytest.raises(gd.SceneError, match="coverage_by_place"):
         gd.plot.coverage_along_flank(short)
 

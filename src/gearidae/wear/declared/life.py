@@ -101,7 +101,7 @@ def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     SceneError
         If the dataset is no life.
     """
-    from gearidae.drawing.style import new_axes
+    from gearidae.drawing.style import label_axis, new_axes
 
     _require(ds, "coverage")
     ax = new_axes(ax, height=3.8)
@@ -116,15 +116,15 @@ def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
             passages[-1], float(ds.attrs["passages_to_sticking"]), color="0.6", alpha=0.5, label="sticks"
         )
     ax.set_xlabel("passages of each tooth of the pinion")
-    ax.set_ylabel("coverage [%]")
+    ax.set_ylabel("coverage (%)")
     ax.set_ylim(0.0, 105.0)
     if "characteristic_frequency" in ds:
         right = ax.twinx()
-        frequency = 1e-3 * ds["characteristic_frequency"].values
+        frequency = ds["characteristic_frequency"].values
         right.plot(
             passages, frequency, color="C1", marker=".", linestyle="--", label="characteristic frequency"
         )
-        right.set_ylabel("characteristic frequency [kHz]")
+        label_axis(right.yaxis, "characteristic frequency", "Hz")
         lines, labels = (
             a + b
             for a, b in zip(ax.get_legend_handles_labels(), right.get_legend_handles_labels(), strict=True)
@@ -175,7 +175,7 @@ def coverage_along_flank(ds: xr.Dataset, ax: Axes | None = None, *, tooth: int |
     SceneError
         If the dataset is no such life, or has no such tooth.
     """
-    from gearidae.drawing.style import new_axes
+    from gearidae.drawing.style import label_axis, new_axes
 
     _require(ds, "coverage_by_place")
     coverage = ds["coverage_by_place"].isel(side=0)
@@ -188,14 +188,14 @@ def coverage_along_flank(ds: xr.Dataset, ax: Axes | None = None, *, tooth: int |
         curve = coverage.isel(passages=int(number))
         shade = str(0.75 * (1.0 - rank / max(len(chosen) - 1, 1)))
         ax.plot(
-            1e6 * coverage["place"].values,
+            coverage["place"].values,
             100.0 * curve.values,
             color=shade,
             marker=".",
             label=f"{float(curve['passages']):.3g} passages",
         )
-    ax.set_xlabel("place along the path of contact [µm]")
-    ax.set_ylabel("coverage [%]")
+    label_axis(ax.xaxis, "place along the path of contact", "m")
+    ax.set_ylabel("coverage (%)")
     ax.legend(frameon=False)
     return ax
 
