@@ -102,6 +102,8 @@ def test_rollers_and_words(sweep):
     assert ax.get_ylabel().startswith("largest pull and push (")
     with pytest.raises(gd.SceneError, match="0 swept keys"):
         gd.plot.outcome(sweep.isel(sam_fraction=0))
+    with pytest.raises(gd.SceneError, match="holds no runs: it is of a study"):
+        gd.plot.outcome(gd.studies.pull_off(scene, 2, load=1e-6, jobs=1))
 
 
 def test_pictures_show_the_runs_at_which_the_outcome_changes(sweep):

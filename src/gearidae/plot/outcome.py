@@ -67,16 +67,15 @@ def outcome(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     Raises
     ------
     SceneError
-        If the dataset is no sweep, or one along more than two dimensions.
+        If the dataset holds no runs, is no sweep, or is one along more than two dimensions.
     """
-    dims = swept_dims(ds)
+    judged, dims = outcomes(ds), swept_dims(ds)
     if not 1 <= len(dims) <= 2:
         raise SceneError(
             "plot",
             f"({len(dims)} swept keys)",
             "outcomes are drawn against one or two swept keys; pick some of the others with .sel",
         )
-    judged = outcomes(ds)
     ax = new_axes(ax, height=3.4 if len(dims) == 1 else 4.2)
     axes = [parameter_axis(ds[dim]) for dim in dims]
     if len(dims) == 1:
