@@ -225,6 +225,10 @@ REFUSED = {
         changed(chain(), "meshes", "second", coating={"sam_fraction": 1.5}),
         r"^meshes\.second\.coating\.sam_fraction = 1\.5: must lie in 0\.\.1",
     ),
+    "a table of a coating": (
+        changed(chain(), "meshes", "second", coating={"pinion_table": [[0.5]] * 7}),
+        r"^meshes\.second\.coating\.pinion_table = \(7 rows\): must have 38 rows, one for each tooth, or one row",
+    ),
     "a misspelt key": (
         changed(chain(), "meshes", "second", coating={"sam_fractoin": 0.5}),
         r"^meshes\.second\.coating\.sam_fractoin = 0\.5: unknown key; did you mean sam_fraction\?",

@@ -151,5 +151,5 @@ def check_tables(scene: Scene) -> None:
             raise SceneError(
                 key,
                 f"({len(table)} rows)",
-                f"must have {teeth} rows, one for each tooth of the {side}, or one row for all",
+                f"must have {teeth} rows, one for each tooth, or one row for all",
             )

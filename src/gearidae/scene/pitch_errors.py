@@ -236,7 +236,7 @@ def check_pitch_errors(scene: GearScene) -> None:
             raise SceneError(
                 own,
                 f"({errors.size} errors)",
-                f"must have {teeth}, one for each tooth of the {name}",
+                f"must have {teeth}, one for each tooth",
             )
         worst = int(np.abs(errors).argmax())
         if abs(errors[worst]) > mesh.backlash:
