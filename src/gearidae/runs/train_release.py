@@ -23,7 +23,7 @@ import numpy as np
 
 from gearidae.arrays import Floats
 from gearidae.runs.release import LeavingPair, largest
-from gearidae.runs.train_statics import balancing_forces, line_of_action, starting_torque
+from gearidae.runs.train_statics import balancing_forces, line_of_action, resistances, starting_torque
 from gearidae.scene import TrainScene
 
 _MOST_EXITS: Final = 400
@@ -98,10 +98,7 @@ class TrainRelease:
 
     def _constants(self) -> Floats:
         """Torque on each shaft that its own dry resistance, and its hub without a load, take [N m]."""
-        scene = self._scene
-        dry = np.array([shaft.resistance for shaft in scene.shafts.values()])
-        dry[self._train.load] += scene.load.torque
-        return dry + [0.0 if hub is None else hub.torque(0.0) for hub in self._hubs]
+        return resistances(self._scene)[0] + [0.0 if hub is None else hub.torque(0.0) for hub in self._hubs]
 
     def _speed(self, mesh: int) -> float:
         """Way along the path of contact of a mesh over that of the drive's circle of unit radius [m]."""
@@ -116,9 +113,8 @@ class TrainRelease:
         turns = self._impacts / min(paces) + 1 / reduce(_common_divisor, paces)
         for k, mesh in enumerate(meshes):
             speed, pitch = self._speed(k), mesh.geometry.base_pitch
-            first = (
-                mesh.geometry.path_length / pitch - mesh.phase
-            ) % 1.0  # the exit of the next pair that leaves
+            # the exit of the next pair that leaves
+            first = (mesh.geometry.path_length / pitch - mesh.phase) % 1.0
             width = float(self._pairs[k].places[-1]) / speed
             for number in range(min(math.ceil(turns * paces[k]), _MOST_EXITS)):
                 begin = (first + number) * pitch / speed

@@ -1,4 +1,4 @@
-"""What can be said of a train on paper: forces of its meshes, loads of its hubs, its modes, the torque that starts it.
+"""What can be said of a train on paper: forces of its meshes, loads of its hubs, the torque that starts it.
 
 Forces are those of steady motion without friction under the mean drive, by the balance of each shaft,
 
@@ -47,7 +47,7 @@ def steady_speed(scene: TrainScene) -> float:
         0 if the drive does not overcome the dry resistance, infinite if nothing slows the train down.
     """
     drive, ratio = scene.drive, ratios(scene.train)
-    dry, viscous, drag = _resistances(scene)
+    dry, viscous, drag = resistances(scene)
     linear = float(viscous @ ratio**2) + drive.speed_gain
     surplus = _own_torque(scene) - float(dry @ ratio)
     surplus += drive.speed_gain * mean_over_run(scene, 0.0, drive.speed_knots())
@@ -61,8 +61,8 @@ def _own_torque(scene: TrainScene) -> float:
     return mean_over_run(scene, scene.drive.torque, scene.drive.schedule)
 
 
-def _resistances(scene: TrainScene) -> tuple[Floats, Floats, Floats]:
-    """Dry resistance, viscous and quadratic drag of each shaft."""
+def resistances(scene: TrainScene) -> tuple[Floats, Floats, Floats]:
+    """Mean dry resistance [N m], viscous [N m s] and quadratic drag [N m s^2] of each shaft, with those of the load."""
     shafts = scene.shafts.values()
     dry, viscous, drag = (
         np.array([getattr(shaft, key) for shaft in shafts]) for key in ("resistance", "viscous", "drag")
@@ -82,7 +82,7 @@ def resisting_torques(scene: TrainScene) -> tuple[float, Floats]:
     """
     drive, train = scene.drive, scene.train
     ratio = ratios(train)
-    dry, viscous, drag = _resistances(scene)
+    dry, viscous, drag = resistances(scene)
     speed = steady_speed(scene)
     if drive.law is not None:
         speed = abs(scene.initial.gear_speed) / float(train.shafts[train.load].ratio)
@@ -254,9 +254,9 @@ def _limit(
     forces = np.full(len(train.meshes), math.nan)
     if train.loops:
         return math.nan, forces
-    dry = _resistances(scene)[0]
+    dry = resistances(scene)[0]
     shafts = list(scene.shafts.values())
-    for number in reversed(outwards(train)):
+    for number in reversed(_outwards(train)):
         hub = shafts[number].hub if hubs is None or number in hubs else None
         driven = [k for k, mesh in enumerate(train.meshes) if mesh.a == number]
         pushed = sum((forces[k] * line_of_action(train, train.meshes[k]) for k in driven), np.zeros(2))
@@ -275,7 +275,7 @@ def _limit(
     raise AssertionError("the drive's shaft is the first")
 
 
-def outwards(train: Train) -> list[int]:
+def _outwards(train: Train) -> list[int]:
     """Numbers of the shafts of a train without loops, each after the one that drives it."""
     order = [train.drive]
     for number in order:
@@ -283,9 +283,7 @@ def outwards(train: Train) -> list[int]:
     return order
 
 
-def _slipping(
-    radius: float, arm: float, constant: float, line: Floats, pushed: Floats, way: float = 1.0
-) -> float:
+def _slipping(radius: float, arm: float, constant: float, line: Floats, pushed: Floats, way: float) -> float:
     """Force F with ``R F = C + way m |F n - V|``: the smallest of a start, infinite where there is none."""
     candidates = balancing_forces(radius, arm, constant, line, pushed)
     sides = [force for force in candidates if way * (radius * force - constant) >= -1e-12 * abs(constant)]
