@@ -324,9 +324,15 @@ EXPOSURES: Mapping[str, Variable] = {variable.name: variable for variable in _EX
 PLACES: Mapping[str, Variable] = {variable.name: variable for variable in _PLACES}
 """What the exposures are labelled by."""
 TRAIN_LABELS: Final = (
-    *("shaft", "mesh", "mesh_driver", "mesh_driven", "mesh_ratio", "shaft_sense", "shaft_ratio"),
+    "shaft",
+    "mesh",
+    "mesh_driver",
+    "mesh_driven",
+    "mesh_ratio",
+    "shaft_sense",
+    "shaft_ratio",
 )
-"""What runs of trains are labelled by besides."""
+"""Coordinates of shafts and meshes in runs of trains."""
 _SUMS = Variable.catalogue((*ENERGY_SUMS, *ENERGY_NOW))
 ENERGY_BALANCE: Mapping[str, Variable] = {
     **{name: variable for name, variable in _SUMS.items() if name not in SLIDING},

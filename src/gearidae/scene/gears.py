@@ -26,7 +26,7 @@ Teeth = Annotated[int, Count(at_least=3, at_most=10_000)]
 SILICON: Final = 2330.0
 """Density of silicon [kg/m^3]."""
 DISC_FACTOR: Final = 3.0
-"""Times that a gear may be as light or as heavy as a solid disc: more is said."""
+"""Ratio of the inertias of a gear and of a solid disc of its size, or its inverse, above which a doubt is reported."""
 
 
 def disc_inertia(density: float, width: float, base_radius: float, pressure_angle: float) -> float:
