@@ -27,6 +27,8 @@ from gearidae.plot.outcome import look_of
 def gear_speed(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     """Draw the speed of the gear over time, all runs in one frame (Teodorescu et al. 2009, Figs. 4 and 7).
 
+    Of a train it is the speed of the judged shaft.
+
     Of a single run, the times at which the gear stood are shaded, by the verdict of each standstill.
 
     Parameters
@@ -50,7 +52,8 @@ def gear_speed(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     _overlay(ax, drawn, "gear_speed", 1.0)
     if len(drawn) == 1:
         _mark_standstills(ax, drawn[0])
-    ax.set_ylabel("gear speed (rad/s)")
+    shaft = ds.attrs.get("judged_shaft")
+    ax.set_ylabel(f"speed of {shaft} (rad/s)" if shaft else "gear speed (rad/s)")
     low, high = ax.get_ylim()
     if low < 0.0 < high:
         zero_line(ax)

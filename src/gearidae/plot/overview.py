@@ -84,7 +84,6 @@ def _train_overview(ds: xr.Dataset, figure: Figure | SubFigure | None) -> Figure
     figure = figure or new_picture((7.6, 6.4 if single else 3.6), panels=True, layout="constrained")
     top, *bottom = figure.subplots(1 + single, 1, squeeze=False)[:, 0]
     gear_speed(ds, top)
-    top.set_ylabel(f"speed of {ds.attrs['judged_shaft']} (rad/s)")
     for ax in bottom:
         work(ds, ax)
     figure.suptitle(_title(ds), x=0.01, ha="left", fontsize="large")
