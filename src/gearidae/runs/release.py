@@ -137,7 +137,7 @@ def largest(
     known: Sequence[Sequence[float]],
     which: int,
 ) -> Sequence[float]:
-    """What holds where one of several numbers is largest, by golden section between the neighbours of a known place.
+    """Find the numbers at the place where one of them is largest, by golden section between the neighbours of a place.
 
     Resistance and depth have a cusp where the asperities that were pressed deepest let go, so that no parabola through
     it helps.
@@ -149,7 +149,12 @@ def largest(
     places, known
         Places in order, and what `at` gives there.
     which : int
-        Index of the number.
+        Index of the number that is to be largest.
+
+    Returns
+    -------
+    sequence of float
+        What `at` gives there.
     """
     k = max(range(len(known)), key=lambda n: known[n][which])
     before = max(k - 1, 0)

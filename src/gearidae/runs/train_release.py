@@ -1,4 +1,4 @@
-r"""What starts a train from rest against adhesion: mesh exits of all its meshes in slow motion, at the places of each.
+r"""Start of a train from rest against adhesion: mesh exits of all its meshes in slow motion.
 
 Mesh k is pressed by what the meshes before it and the hubs pass on, and its leaving pair holds its driven gear back
 with :math:`\rho_k` (`gearidae.runs.release`),
@@ -7,8 +7,9 @@ with :math:`\rho_k` (`gearidae.runs.release`),
 
     R_{kb}\,(F_k - \rho_k) = \sum R_{ja} F_j + h(F_k, F_j),
 
-from the drive to the load. The train turns on if what arrives at the load is what resists there, at every place. Exits
-of two meshes that coincide add up, each with the ratio of its stage; whether they do follows from the phases.
+from the drive to the load. The train turns on if at every place the torque that arrives at the load overcomes what
+resists there. Exits of two meshes that coincide add up, each with the ratio of its stage; whether they coincide follows
+from the phases. A place is an angle of the drive's shaft.
 """
 
 from __future__ import annotations
@@ -27,18 +28,18 @@ from gearidae.runs.train_statics import balancing_forces, line_of_action, resist
 from gearidae.scene import TrainScene
 
 _MOST_EXITS: Final = 400
-"""Exits of one mesh that are looked at: phases of meshes with other ratios repeat after many."""
+"""Largest number of exits of one mesh that are followed: phases of meshes may repeat only after many more."""
 _SAME_PLACE: Final = 1e-6
-"""Difference of two places, in widths of an exit, at which exits of the same meshes are alike."""
+"""Difference of two places, in widths of an exit, below which exits of the same meshes are alike."""
 
 
 class Resistance(NamedTuple):
-    """What holds a train where it needs the largest torque.
+    """Resistance of a train at the place where it needs the largest torque.
 
     Attributes
     ----------
     missing : float
-        Torque that the drive lacks there [N m]; negative where it has more than it needs.
+        Torque that the drive lacks [N m]; negative where it has more than it needs.
     held : ndarray, shape (meshes,)
         Forces with which leaving pairs hold the driven gears [N].
     """
@@ -48,7 +49,7 @@ class Resistance(NamedTuple):
 
 
 class _Window(NamedTuple):
-    """An exit: its mesh, how many exits the mesh has had before, and from where to where the drive's circle rolls."""
+    """An exit: its mesh, its number among those of the mesh, angles of the drive [rad] where it begins and ends."""
 
     mesh: int
     number: int
@@ -57,7 +58,7 @@ class _Window(NamedTuple):
 
 
 class _Passed(NamedTuple):
-    """Torque that is missing [N m], forces of the meshes [N] and with what they hold [N]."""
+    """Torque that is missing [N m], forces of the meshes [N], and forces with which their leaving pairs hold [N]."""
 
     missing: float
     forces: Floats
@@ -65,14 +66,14 @@ class _Passed(NamedTuple):
 
 
 class TrainRelease:
-    """Exits of a train without loops in slow motion.
+    """Mesh exits of a train without loops in slow motion.
 
     Parameters
     ----------
     scene : Scene
         A train.
     impacts : int
-        Exits of each mesh by which its contacts are pressed deeper; those after have what they left.
+        Exits of each mesh that press its contacts deeper; later exits begin with the gap that these have left.
     """
 
     def __init__(self, scene: TrainScene, impacts: int) -> None:
@@ -101,7 +102,7 @@ class TrainRelease:
         return resistances(self._scene)[0] + [0.0 if hub is None else hub.torque(0.0) for hub in self._hubs]
 
     def _speed(self, mesh: int) -> float:
-        """Way along the path of contact of a mesh over that of the drive's circle of unit radius [m]."""
+        """Speed along the path of contact of a mesh over the angular speed of the drive [m/rad]."""
         there = self._train.meshes[mesh]
         return there.geometry.base_radius_gear * float(self._train.shafts[there.b].ratio)
 
@@ -152,7 +153,7 @@ class TrainRelease:
     def _follow(
         self, torque: float, group: Sequence[_Window], joined: Sequence[Floats], begin: list[float]
     ) -> Sequence[float]:
-        """Follow exits that overlap; what their contacts are pressed to goes into `joined`, by mesh and exit."""
+        """Follow exits that overlap; the gaps to which contacts are pressed go into `joined`, by mesh and exit."""
         places = np.unique(
             np.concatenate([w.begin + self._pairs[w.mesh].places / self._speed(w.mesh) for w in group])
         )
@@ -180,7 +181,7 @@ class TrainRelease:
         group: Sequence[_Window],
         joined: Sequence[Floats],
     ) -> list[float]:
-        """Torque that is missing at a place of the drive's circle; depths of all gaps, and resistances."""
+        """Torque that is missing at an angle of the drive [rad], depths of all gaps, and resistances."""
         count = len(self._pairs)
         depths, held = list(near[1 : 1 + count]), np.array(near[1 + count :])
 

@@ -43,7 +43,7 @@ def static_start(scene: TrainScene, impacts: int, lowest: float) -> tuple[float,
     scene : Scene
         A train without loops.
     impacts : int
-        Exits of each mesh by which its contacts are pressed deeper.
+        Exits of each mesh that press its contacts deeper.
     lowest : float
         Torque beyond that of dry loads and hubs below which nothing is looked for [N m].
 
@@ -53,7 +53,7 @@ def static_start(scene: TrainScene, impacts: int, lowest: float) -> tuple[float,
         [N m]; that of dry loads and hubs where adhesion does not hold the train at the lowest torque, infinite where it
         holds it at any, or a hub locks.
     held : ndarray, shape (meshes,)
-        With which adhesion holds the driven gear of each mesh [N] at the place where the torque is needed.
+        Forces with which adhesion holds the driven gear of each mesh [N] at the place where the torque is needed.
     """
     dry, nothing = starting_torque(scene)[0], np.zeros(len(scene.meshes))
     if math.isinf(dry):
@@ -67,7 +67,7 @@ def static_start(scene: TrainScene, impacts: int, lowest: float) -> tuple[float,
 
 
 def part_names(scene: TrainScene) -> list[str]:
-    """Names of what takes the starting torque of a train, in the order in which it is added up."""
+    """Names of the parts of a train that take its starting torque, in the order in which they are added up."""
     hubs = [name for name, shaft in scene.shafts.items() if shaft.hub is not None]
     return [
         "dry resistance",
@@ -82,7 +82,7 @@ def train_parts(scene: TrainScene, held: Sequence[float] | Floats) -> Floats:
     Returns
     -------
     ndarray, shape (parts,)
-        What each adds to those before it, at the drive [N m]; the sum is the torque.
+        Torque at the drive that each part adds to those before it [N m]; the sum is the starting torque.
     """
     count, forces = len(scene.meshes), np.asarray(held, dtype=np.float64)
     hubs = [number for number, shaft in enumerate(scene.shafts.values()) if shaft.hub is not None]

@@ -1,8 +1,8 @@
 """Search the smallest drive torque at which a gear at rest begins to turn against adhesion.
 
 Of discrete asperities (contact.roughness = "discrete"): the distribution over drawn gears, whose torque rises slowly
-until each has turned one pitch. Of a train: the torque without inertia, and
-what each mesh and hub takes. Of drawn errors of teeth (mesh.pitch_error_rms), with --seeds: the torque of each gear.
+until each has turned one pitch. Of a train: the torque without inertia, and what each mesh and hub takes. Of drawn
+errors of teeth (mesh.pitch_error_rms), with --seeds: the torque of each gear.
 """
 
 from __future__ import annotations
