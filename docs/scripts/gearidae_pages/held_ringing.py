@@ -34,12 +34,12 @@ SCENE: Final = gd.Scene.from_dict(
         "run": {"duration": "5 s", "samples": "off"},
     }
 )
-"""Gears from rest under a torque that rises to four times what the dry load holds."""
+"""Gears from rest under a torque that rises to twelve times what the dry load takes at the pinion."""
 ACTIONS: Final = {
     "damping 1.4e-7 N s/m": {"mesh.damping": 1.4e-7},
     "film 1e-5 N s/m, 30 nm": {"mesh.film_damping": 1e-5, "mesh.film_gap": 3e-8},
 }
-"""What takes the energy of the ringing."""
+"""Dampings that dissipate the energy of the ringing, as keys of a scene."""
 COVERAGES: Final = {"full coverage": 1.0, "half": 0.5, "bare": 0.0}
 """Fractions of the surface under the coating."""
 _RTOLS: Final = (1e-6, 1e-5, 1e-4)
