@@ -34,6 +34,20 @@ PAIR = gd.Scene.from_dict(
 )
 
 
+def held_by_hubs(coefficient, radii, dry, top, ramp):
+    """Changes of a scene: friction of hubs and a dry load hold gears under a torque that rises to `top` [N m]."""
+    return {
+        "gears.hub_friction": coefficient,
+        "gears.pinion_hub_radius": radii[0],
+        "gears.gear_hub_radius": radii[1],
+        "load.torque": dry,
+        "coating.sam_fraction": 1.0,
+        "run.duration": ramp,
+        "run.samples": "off",
+        "drive.schedule": [(0.0, 0.0), (ramp, top)],
+    }
+
+
 def ended(duration, **changes):
     return gd.simulate(PAIR.replace({"run.duration": duration} | changes))
 
@@ -305,18 +319,7 @@ def test_gears_break_away_at_the_closed_form_whatever_the_ramp(ramp):
 )
 def test_gears_whose_hubs_hold_little_break_away_at_the_closed_form(coefficient, radii, dry, top, ramp):
     """Free gears go no farther than teeth that give way: what was at rest up to its slip has stood until then."""
-    scene = PAIR.replace(
-        {
-            "gears.hub_friction": coefficient,
-            "gears.pinion_hub_radius": radii[0],
-            "gears.gear_hub_radius": radii[1],
-            "load.torque": dry,
-            "coating.sam_fraction": 1.0,
-            "run.duration": ramp,
-            "run.samples": "off",
-            "drive.schedule": [(0.0, 0.0), (ramp, top)],
-        }
-    )
+    scene = PAIR.replace(held_by_hubs(coefficient, radii, dry, top, ramp))
     wanted = friction.hub_starting_torque(scene.geometry, dry, coefficient, radii)
     without = dry * scene.geometry.base_radius_pinion / scene.geometry.base_radius_gear
     assert without < 0.96 * wanted

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import gearidae as gd
-from engine.test_standing import PAIR
+from engine.test_standing import PAIR, held_by_hubs
 from gearidae.mesh import friction
 from properties.test_what_physics_demands import HIGH, SLOW, _dry
 
@@ -195,18 +195,7 @@ def break_away(seed):
     dry = float(10 ** rng.uniform(-16.5, -15.3))
     wanted = friction.hub_starting_torque(PAIR.geometry, dry, coefficient, radii)
     ramp, top = float(rng.uniform(0.3, 0.6)), wanted * float(rng.uniform(1.5, 3.0))
-    scene = PAIR.replace(
-        {
-            "gears.hub_friction": coefficient,
-            "gears.pinion_hub_radius": radii[0],
-            "gears.gear_hub_radius": radii[1],
-            "load.torque": dry,
-            "coating.sam_fraction": 1.0,
-            "run.duration": ramp,
-            "run.samples": "off",
-            "drive.schedule": [(0.0, 0.0), (ramp, top)],
-        }
-    )
+    scene = PAIR.replace(held_by_hubs(coefficient, radii, dry, top, ramp))
 
     def holds(ds):
         share = float(ds.breakaway_torque) / wanted
