@@ -115,10 +115,11 @@ def beyond_rows(result: Result) -> Iterator[tuple[str, str]]:
         yield "sweep of 8 runs on two cores", f"{100 * result.sweep_efficiency:.0f} % efficiency"
     if result.start is not None:
         s = result.start
-        yield (
-            "first process (compiles)",
-            f"{s.cold_import:.2f} s to import, {s.cold_run:.1f} s for a first short run",
-        )
+        if not math.isnan(s.cold_run):
+            yield (
+                "first process (compiles)",
+                f"{s.cold_import:.2f} s to import, {s.cold_run:.1f} s for a first short run",
+            )
         yield (
             "every later process",
             f"{s.warm_import:.2f} s to import, {s.warm_run:.2f} s for a first short run",
