@@ -122,7 +122,7 @@ class TrainRelease:
                 yield _Window(k, min(number, self._impacts - 1), begin, begin + width)
 
     def _grouped(self, windows: Iterator[_Window]) -> Iterator[list[_Window]]:
-        """Yield the exits that overlap, once where they come again alike."""
+        """Yield groups of exits that overlap; one that repeats is yielded once."""
         known = set()
         group: list[_Window] = []
         for window in [*sorted(windows, key=lambda w: w.begin), None]:

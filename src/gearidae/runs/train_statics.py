@@ -1,4 +1,4 @@
-"""What can be said of a train on paper: forces of its meshes, loads of its hubs, the torque that starts it.
+"""Statics of a train: forces of its meshes, loads of its hubs, its modes, the torque that starts it.
 
 Forces are those of steady motion without friction under the mean drive, by the balance of each shaft,
 

@@ -50,7 +50,9 @@ def run_trains(plan: SweepPlan, execution: Execution) -> xr.Dataset:
     Raises
     ------
     Interrupted
-        On Ctrl-C, with the runs that are finished; the others are marked. Empty without any.
+        On Ctrl-C, with the finished runs; the others are marked as unfinished.
+    KeyboardInterrupt
+        On Ctrl-C before any run is finished.
     """
     scenes = _scenes(plan)
     members: dict[int, xr.Dataset] = {}
@@ -73,7 +75,7 @@ def _scenes(plan: SweepPlan) -> list[TrainScene]:
 
 
 def _compute(scenes: Sequence[TrainScene], execution: Execution, members: dict[int, xr.Dataset]) -> None:
-    """Run all scenes; `members` has what is finished, by their numbers, also at Ctrl-C."""
+    """Run all scenes; `members` gets each finished run by its number, and keeps these at Ctrl-C."""
     with (
         sweep_progress(execution.progress, len(scenes), lambda: "") as report,
         execution.computing(len(scenes)) as executor,
@@ -93,7 +95,7 @@ def _compute(scenes: Sequence[TrainScene], execution: Execution, members: dict[i
 
 
 def train_member(scene: TrainScene, backend: str) -> xr.Dataset:
-    """Run one train of a sweep; a run that could not go on says so in its status."""
+    """Run one train of a sweep; the status of a run that could not go on says why."""
 
     def look(time: float, events: int) -> None:
         if is_halted():

@@ -1,4 +1,4 @@
-"""The shaft of a train that a run is judged by, and the mesh whose pitch counts: that in which it is driven."""
+"""The shaft of a train by which a run is judged, and the mesh that drives it, whose pitch counts."""
 
 from __future__ import annotations
 
@@ -30,19 +30,19 @@ def judged_shaft(scene: TrainScene) -> int:
 
 
 def judged_mesh(scene: TrainScene) -> int:
-    """Number of the first mesh in which the judged shaft is driven; of the drive's own shaft that which it drives."""
+    """Number of the first mesh that drives the judged shaft; of the drive's own shaft, the first that it drives."""
     shaft, meshes = judged_shaft(scene), scene.train.meshes
     driven = [k for k, mesh in enumerate(meshes) if mesh.b == shaft]
     return (driven or [k for k, mesh in enumerate(meshes) if mesh.a == shaft])[0]
 
 
 def refuse_judged(scene: Scene) -> None:
-    """Refuse a shaft to be judged of a scene that has none by name.
+    """Refuse ``run.judged`` in a scene whose shafts have no names.
 
     Raises
     ------
     SceneError
-        If there is one.
+        If it is given.
     """
     if scene.run.judged is not None:
         raise SceneError("run.judged", scene.run.judged, "is of a train: of a pair the gear is judged")

@@ -45,7 +45,7 @@ def static_start(scene: TrainScene, impacts: int, lowest: float) -> tuple[float,
     impacts : int
         Exits of each mesh that press its contacts deeper.
     lowest : float
-        Torque beyond that of dry loads and hubs below which nothing is looked for [N m].
+        Smallest torque beyond that of dry loads and hubs that is searched for [N m].
 
     Returns
     -------

@@ -31,7 +31,7 @@ Torque = Callable[[float, float, float], float]
 """Torque [N m] of time [s], angle [rad] and speed [rad/s] of a shaft."""
 _RTOL: Final = 1e-9
 _LOOKS: Final = 2000
-"""Times at which a train at rest is looked at for what lets it go."""
+"""Times at which the torques on a train at rest are compared with its dry resistance."""
 
 
 def knots_at(knots: Knots) -> Callable[[float], float]:
@@ -75,7 +75,7 @@ def torque_of(table: Drive | Load) -> Torque:
 
 
 class FreeTrain:
-    """A train that nothing but its torques moves and holds."""
+    """A train under its torques and resistances alone."""
 
     def __init__(self, scene: TrainScene) -> None:
         train, shafts = scene.train, list(scene.shafts.values())
@@ -144,12 +144,12 @@ class FreeTrain:
         return where
 
     def _let_go(self, t: float, angle: float) -> float:
-        """Way in which a train at rest is turned; 0 if dry resistance holds it."""
+        """Direction in which the torques move a train at rest; 0 if dry resistance holds it."""
         torque = self.driving(t, angle, 0.0)
         return math.copysign(1.0, torque) if abs(torque) > self.dry(t, angle, 0.0) else 0.0
 
     def _waits(self, begin: float, end: float, angle: float) -> float:
-        """Time at which a train at rest is let go, or the end."""
+        """Time at which a train at rest begins to move, or the end."""
         looks = np.linspace(begin, end, _LOOKS + 1)
         for before, t in pairwise(looks):
             if self._let_go(float(t), angle) != 0.0:

@@ -1,7 +1,7 @@
-"""What a run of a train did, of its judged shaft: extremes as those of a pair, and what holds it by name.
+"""Outcome of a run of a train: extremes of its judged shaft, as those of a pair, and the names of what holds it.
 
-The engine follows intervals at rest and extremes of the speed at its own steps; how the speed changes, and zeros
-without a rest, are those of the samples.
+Intervals at rest and extremes of the speed come from the steps of the engine; changes of the speed, and its zeros
+without a rest, from the samples.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 _LOOKS: Final = 500
 """Times of a standstill at which the drive is compared with the dry resistance."""
 _NOT_PASSED_ON: Final = 0.01
-"""Share of the torque at a shaft that must be missing behind a mesh for its adhesion to have a part."""
+"""Share of the torque arriving at a shaft that must be missing for adhesion in its mesh to be named."""
 
 
 class Judged(NamedTuple):
-    """The extremes of the judged shaft, and names of all that holds it: ``hub friction of middle``."""
+    """Extremes of the judged shaft, and names of all that holds it, such as ``hub friction of middle``."""
 
     extremes: Extremes
     held_by: tuple[str, ...]
@@ -151,7 +151,7 @@ def _exits(solution: TrainSolution, motion: _Motion) -> Floats:
 
 
 def _speeds(motion: _Motion) -> dict[str, float]:
-    """How the speed changed after the start-up, in the second half, and in the last twentieth of the run."""
+    """Changes of the speed after the start-up, in the second half, and in the last twentieth of the run."""
     if not motion.time.size:
         return {}
     share = (motion.time - motion.begin) / max(motion.end - motion.begin, 1e-300)
@@ -228,7 +228,7 @@ def _judged(motion: _Motion, free: FreeTrain, zero: float, end: float, inside: A
 
 
 def _back(motion: _Motion, free: FreeTrain) -> dict[str, float]:
-    """By how far the shaft has gone back at the end, and free gears from the same zero."""
+    """Distances by which the shaft, and free gears from the same zero, have gone back at the end."""
     nothing = {"turned_back": 0.0, "free_turned_back": 0.0, "back_time": math.nan}
     places = motion.angle / motion.pitch
     top, low, forward, turned = 0, 0, True, 0
@@ -255,7 +255,7 @@ def _back(motion: _Motion, free: FreeTrain) -> dict[str, float]:
 def _holders(
     scene: TrainScene, solution: TrainSolution, free: FreeTrain, motion: _Motion, free_advance: float
 ) -> tuple[Holding, tuple[str, ...]]:
-    """What holds a train that stands: dry resistances alone where they suffice, else hubs that rest, and adhesion."""
+    """What holds a train that stands: dry resistances alone if they suffice; else hubs at rest, and adhesion."""
     train, held, holding = scene.train, [], Holding(0)
     names = list(scene.shafts)
     if free_advance == 0.0:
@@ -283,7 +283,7 @@ def _holders(
 
 
 def _adhering(scene: TrainScene, solution: TrainSolution) -> list[str]:
-    """Names of the meshes behind which torque is missing that no friction of the driven shaft can hold."""
+    """Names of the meshes that drive a shaft at which more torque is missing than its friction can hold."""
     train = scene.train
     late = solution.time >= solution.start + RUN_PARTS[2] * (solution.reached - solution.start)
     forces = solution.samples["mesh_force"][:, late].mean(axis=1)

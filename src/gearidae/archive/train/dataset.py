@@ -1,4 +1,4 @@
-"""From what the engine hands up of a train to one labelled dataset."""
+"""From the engine's solution of a train to one labelled dataset."""
 
 from __future__ import annotations
 
@@ -55,11 +55,11 @@ def train_dataset(
     scene : Scene
         The scene exactly as it was run.
     solution : TrainSolution
-        What the engine handed up.
+        Result of the engine.
     extremes : Extremes
         Of the judged shaft.
     held_by : sequence of str, optional
-        What holds it, by names.
+        Names of what holds the shaft.
 
     Returns
     -------

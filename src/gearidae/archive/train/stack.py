@@ -100,12 +100,12 @@ def stack_trains(
 
 
 def unfinished(like: xr.Dataset, scene: TrainScene) -> xr.Dataset:
-    """Make the dataset of a run that an interrupt has kept from its end: without samples and events, else NaN and 0.
+    """Make the dataset of a run that an interrupt has prevented: without samples and events, numbers are NaN or 0.
 
     Parameters
     ----------
     like : xarray.Dataset
-        A run of the same sweep that is there.
+        A finished run of the same sweep.
     """
     blank = like.isel(time=slice(0), event=slice(0)).assign_coords(
         coordinates(scene.train, judged_shaft(scene))
