@@ -43,12 +43,12 @@ def still(scene, since=0.0, place=0.0):
         "begin": np.full(count, since),
         "end": np.full(count, scene.run.duration),
     }
-    return replace(moving, time=time, samples=samples, rests=rests, reached=scene.run.duration)
+    track = moving.track._replace(time=time, samples=samples)
+    return replace(moving, time=time, samples=samples, track=track, rests=rests, reached=scene.run.duration)
 
 
 def labelled(scene, solution):
-    judged = judge_train(scene, solution)
-    return train_dataset(scene, solution, judged.extremes, judged.held_by)
+    return train_dataset(scene, judge_train(scene, solution))
 
 
 def test_free_gears_of_a_train_go_as_far_as_by_hand():
@@ -129,7 +129,7 @@ def test_a_train_that_is_pulled_back_runs_back():
     samples = {**solution.samples, "shaft_angle": solution.samples["shaft_angle"] + back}
     samples["shaft_speed"] = np.full_like(samples["shaft_angle"], -200.0)
     nothing = {name: np.empty(0) for name in solution.rests}
-    ds = labelled(scene, replace(solution, samples=samples, rests=nothing))
+    ds = labelled(scene, replace(solution, track=solution.track._replace(samples=samples), rests=nothing))
     (outcome,) = outcomes(ds)
     assert outcome.verdict == "runs back"
     assert outcome.turned_back == pytest.approx(0.2 * 76 / (2.0 * np.pi), rel=1e-9)

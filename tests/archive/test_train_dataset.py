@@ -20,8 +20,7 @@ SCENE = Scene.from_dict(chain(hubs=0.3))
 
 def labelled(scene=SCENE):
     solution = solved(scene)
-    judged = judge_train(scene, solution)
-    return train_dataset(scene, solution, judged.extremes, judged.held_by)
+    return train_dataset(scene, judge_train(scene, solution))
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ from scipy.integrate import trapezoid
 from tests.reference.slow_train import SlowTrain
 
 from gearidae.records import EventKind, Flank, Statistics
-from gearidae.records.train_results import TrainSolution
+from gearidae.records.train_results import Track, TrainSolution
 
 
 @functools.cache
@@ -41,24 +41,26 @@ def solved(scene, samples=1501):
     drive_work = over(drive * speed[train.drive])
     residual = drive_work - load_work - hub_loss.sum() - damped.sum() - kinetic
     zero_shaft, zero_mesh = np.zeros(len(a) + 1 - len(train.loops)), np.zeros(len(a))
+    samples_of_run = {
+        "shaft_speed": speed,
+        "shaft_angle": turned,
+        "hub_load": column["hub"],
+        "hub_load_angle": 0.0 * column["hub"],
+        "mesh_force": force,
+        "transmission_error": column["u"],
+        "drive_gap": half - column["u"],
+        "coast_gap": half + column["u"],
+        "pairs_in_contact": np.ones_like(force),
+        "drive_torque": drive,
+        "load_torque": load.torque + load.drag * last**2,
+        "pin_load": 0.0 * drive,
+    }
     return TrainSolution(
         shafts=tuple(scene.shafts),
         meshes=tuple(scene.meshes),
         time=time,
-        samples={
-            "shaft_speed": speed,
-            "shaft_angle": turned,
-            "hub_load": column["hub"],
-            "hub_load_angle": 0.0 * column["hub"],
-            "mesh_force": force,
-            "transmission_error": column["u"],
-            "drive_gap": half - column["u"],
-            "coast_gap": half + column["u"],
-            "pairs_in_contact": np.ones_like(force),
-            "drive_torque": drive,
-            "load_torque": load.torque + load.drag * last**2,
-            "pin_load": 0.0 * drive,
-        },
+        samples=samples_of_run,
+        track=Track(time, samples_of_run, np.empty(0), np.empty(0)),
         events={
             "time": np.array([27.510296e-6, 57.871869e-6]),
             "kind": np.array([EventKind.MESH_EXIT, EventKind.MESH_EXIT]),

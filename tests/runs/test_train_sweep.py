@@ -8,9 +8,10 @@ import xarray as xr
 from tests.reference.trains import chain
 
 import gearidae as gd
+from gearidae.archive.train.variables import OF_JUDGED
 from gearidae.cli import main
-from gearidae.runs import train_sweep
-from gearidae.runs.train_sweep import train_member
+from gearidae.runs import batch
+from gearidae.runs.run_result import solve_and_leave
 from gearidae.scene import Scene, dump_case
 
 COVERAGE, HUB = "meshes.second.coating.sam_fraction", "shafts.idler.hub_radius"
@@ -82,30 +83,54 @@ def test_who_holds_is_kept_of_each_run(scene):
     assert ds.gearidae.verdicts().words[0] == single.gearidae.verdicts().words[0]
 
 
-@pytest.mark.parametrize("after", [0, 1])
-def test_ctrl_c_leaves_the_finished_runs(scene, swept, tmp_path, monkeypatch, after):
+def test_a_sweep_that_was_cut_off_goes_on(scene, swept, tmp_path, monkeypatch):
+    """The first run is kept, read back from the journal, and stands beside those that are computed later."""
     ran = []
 
-    def member(member_scene, backend):
-        if len(ran) == after:
+    def one_alone(member_scene, backend, keep, on_progress=None):
+        if ran:
             raise KeyboardInterrupt
         ran.append(member_scene)
-        return train_member(member_scene, backend)
+        return solve_and_leave(member_scene, backend, keep, on_progress)
 
-    monkeypatch.setattr(train_sweep, "train_member", member)
     path = tmp_path / "sweep.nc"
-    with pytest.raises(gd.Interrupted) as caught:
-        gd.sweep(scene, OVER, jobs=1, progress=False, archive=path)
-    if not after:
-        assert not caught.value.dataset.sizes
-        assert not path.exists()
-        return
+    with monkeypatch.context() as patched:
+        patched.setattr(batch, "solve_and_leave", one_alone)
+        with pytest.raises(gd.Interrupted, match="resume"):
+            gd.sweep(scene, OVER, jobs=1, progress=False, archive=path, backend="native")
     read = gd.open_archive(path)
     assert read["status"].values.ravel().tolist() == ["finished", *["interrupted"] * 3]
     assert read.gearidae.verdicts().verdict.tolist() == ["turns smoothly", *["unfinished"] * 3]
     first = {"meshes_second_coating_sam_fraction": 1.0, "hub_radius": 3e-6}
     xr.testing.assert_equal(read.gearidae.run(**first), swept.gearidae.run(**first))
     assert np.isnan(read["shaft_speed"][1, 1]).all()
+    read.close()
+    with monkeypatch.context() as patched:
+        patched.setattr(batch, "solve_and_leave", lambda s, *rest: ran.append(s) or solve_and_leave(s, *rest))
+        whole = gd.sweep(scene, OVER, jobs=1, progress=False, archive=path, resume=True)
+    assert len(ran) == 4
+    xr.testing.assert_equal(whole.drop_vars("wall_time"), swept.drop_vars("wall_time"))
+
+
+def test_parts_of_runs_are_those_of_whole_runs(scene, swept):
+    asked = ["gear_speed", "mesh_exits", "adhesion_loss", "scene"]
+    ds = gd.sweep(scene, OVER, jobs=1, progress=False, keep=asked)
+    for name in asked[:3]:
+        xr.testing.assert_equal(ds[name], swept[name])
+    assert {"shaft_speed", "event_time", "hub_loss"}.isdisjoint(ds.variables)
+    assert [*ds.gearidae.verdicts().words] == [*swept.gearidae.verdicts().words]
+    with pytest.raises(gd.SceneError, match="keep = exposures: is nothing that a run of this scene leaves"):
+        gd.sweep(scene, OVER, progress=False, keep=["exposures"])
+
+
+@pytest.mark.parametrize("samples", ["off", 2, 61])
+def test_no_verdict_depends_on_the_samples(scene, samples):
+    rest = scene.replace({"initial.gear_speed": 0.0, "run.duration": "1 ms", "drive.torque": 7.9e-12})
+    run, other = (gd.simulate(rest, samples=count, progress=False) for count in (samples, 501))
+    assert run.gearidae.verdicts().words[0] == other.gearidae.verdicts().words[0]
+    assert run.attrs["held_by"] == other.attrs["held_by"]
+    for name in (*OF_JUDGED, "standstill_list"):
+        np.testing.assert_array_equal(run[name], other[name])
 
 
 def test_pictures_and_report_of_a_sweep(swept, tmp_path):
@@ -120,8 +145,7 @@ def test_pictures_and_report_of_a_sweep(swept, tmp_path):
 @pytest.mark.parametrize(
     ("over", "options", "message"),
     [
-        ({COVERAGE: [1.0]}, {"keep": ["verdict"]}, "keep = .*everything is kept of their runs"),
-        ({COVERAGE: [1.0]}, {"resume": True}, "resume = True: is not for trains of several meshes"),
+        ({COVERAGE: [1.0]}, {"resume": True}, "resume = True: needs an archive"),
         ({"run.judged": ["idler", "output"]}, {}, "over = run.judged: must leave the shafts"),
     ],
 )

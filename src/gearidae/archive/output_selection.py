@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -23,7 +24,9 @@ from gearidae.archive.variables import (
     extreme_names,
 )
 from gearidae.errors import SceneError
-from gearidae.records import ROWS, Rows, Solution
+from gearidae.records import ROWS, Events, Rows, Solution
+from gearidae.records.train_results import AnySolution, TrainSolution
+from gearidae.scene import is_long_train
 from gearidae.scene.group import did_you_mean, shorten
 from gearidae.scene.sampled import columns_of
 
@@ -79,16 +82,41 @@ class OutputSelection:
 
     def columns(self, scene: Scene) -> tuple[str, ...]:
         """List the sampled columns that are kept."""
-        return tuple(name for name in columns_of(scene) if self.holds(name))
+        return tuple(name for name in _parts_of(scene)["samples"] if self.holds(name))
 
     def holds_rows(self, kind: type[Rows]) -> bool:
         """Whether rows of a kind are kept."""
         return self.holds(f"{kind.dim}_time")
 
-    def thinned(self, solution: Solution) -> Solution:
+    def thinned(self, solution: AnySolution) -> AnySolution:
         """Return a run without the samples and the rows that are not kept, and without its last state."""
         if self.names is None:
             return solution
+        return (
+            self._thinned_train(solution) if isinstance(solution, TrainSolution) else self._thinned(solution)
+        )
+
+    def _thinned_train(self, solution: TrainSolution) -> TrainSolution:
+        from gearidae.archive.train.variables import TWO_SHAFTS  # which makes datasets by this module
+
+        wanted = (self.names or frozenset()) | {
+            source for name, source in TWO_SHAFTS.items() if self.holds(name)
+        }
+        samples = {name: values for name, values in solution.samples.items() if name in wanted}
+
+        def rows(table: Mapping[str, Any], held: bool) -> dict[str, Any]:
+            return {name: column if held else column[:0] for name, column in table.items()}
+
+        return replace(
+            solution,
+            time=solution.time if samples else _NO_TIMES,
+            samples=samples,
+            events=rows(solution.events, self.holds_rows(Events)),
+            rests=rows(solution.rests, self.holds("rest_list")),
+            checkpoint=None,
+        )
+
+    def _thinned(self, solution: Solution) -> Solution:
         samples = {name: values for name, values in solution.samples.items() if self.holds(name)}
         time = solution.time if samples else _NO_TIMES
         reached = solution.reached
@@ -100,6 +128,8 @@ class OutputSelection:
 
 
 EVERYTHING = OutputSelection()
+TOTALS = OutputSelection(("verdict",), frozenset())
+"""No samples and no rows: what a run has summed up is with it in any case."""
 _NO_TIMES = np.empty(0)
 """Shared by all runs that keep none."""
 
@@ -126,21 +156,16 @@ def read_keep(keep: Iterable[str] | str | None, scene: Scene) -> OutputSelection
     if not isinstance(asked, Iterable):
         raise SceneError("keep", shorten(keep), "must be a list of variables, such as verdict or gear_speed")
     asked = list(asked)
-    extremes = list(extreme_names(scene))
     members: dict[str, tuple[str, ...]] = {
         "verdict": tuple(VERDICT),
-        "extremes": (*extremes, *([] if scene.roller is not None else [STANDSTILL_LIST.name])),
         "statistics": (*RUN, *(variable.name for variable in CONTACT)),
-        "energy_balance": tuple(ENERGY_TOTALS),
         "scene": ("scene",),
-        "exposures": tuple(EXPOSURES),
-        **({"passages": tuple(PASSAGES)} if scene.roller is None else {}),
-        "impacts": (*IMPACTS, "impacts"),
-        "samples": columns_of(scene),
-        "events": (*EVENTS, "impacts"),
+        **_parts_of(scene),
     }
-    energies = members["energy_balance"]
-    single = (*RUN, *OF_SWEPT_RUN, *extremes, *energies, *EXPOSURES, *columns_of(scene), *VERDICT)
+    alone = (
+        members[group] for group in ("extremes", "energy_balance", "exposures", "samples") if group in members
+    )
+    single = (*RUN, *OF_SWEPT_RUN, *VERDICT, *itertools.chain(*alone))
     members |= {name: (name,) for name in single if name not in members}
     names = set(_ALWAYS) | (set(_IN_WORDS) if scene.roller is None else set())
     for name in asked:
@@ -149,6 +174,24 @@ def read_keep(keep: Iterable[str] | str | None, scene: Scene) -> OutputSelection
             raise SceneError("keep", shorten(name), f"is nothing that a run of this scene leaves; {meant}")
         names.update(members[name])
     return OutputSelection(tuple(sorted({*asked, "verdict"})), frozenset(names))
+
+
+def _parts_of(scene: Scene) -> Mapping[str, tuple[str, ...]]:
+    """Variables that a run of a scene leaves by itself, by their groups."""
+    if is_long_train(scene):
+        from gearidae.archive.train.variables import PARTS  # which makes datasets by this module
+
+        return PARTS
+    pairs_only = {"passages": tuple(PASSAGES)} if scene.roller is None else {}
+    return {
+        "extremes": (*extreme_names(scene), *([] if scene.roller is not None else [STANDSTILL_LIST.name])),
+        "energy_balance": tuple(ENERGY_TOTALS),
+        "exposures": tuple(EXPOSURES),
+        **pairs_only,
+        "impacts": (*IMPACTS, "impacts"),
+        "samples": columns_of(scene),
+        "events": (*EVENTS, "impacts"),
+    }
 
 
 def kept_in(attributes: Any, scene: Scene) -> OutputSelection:

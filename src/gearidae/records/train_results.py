@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.records.results import Words
+from gearidae.records.extremes import Extremes
+from gearidae.records.results import Solution, Words
 from gearidae.records.statistics import Statistics
 
 SHAFT_SAMPLES: Final = ("shaft_speed", "shaft_angle", "hub_load", "hub_load_angle")
@@ -46,6 +49,29 @@ ENERGIES: Final = (
 """Energies of the whole train [J]; ``load_work`` is what the dry resistance and the drags of the load have taken."""
 
 
+class Track(NamedTuple):
+    """Motion of a train by which its run is judged: as many looks at every run, whatever is sampled.
+
+    Attributes
+    ----------
+    time : ndarray, shape (n,)
+        [s].
+    samples : dict of str to ndarray
+        As those of `TrainSolution`.
+    zero_time, zero_angle : ndarray, shape (k,)
+        Times [s] and angles [rad] at which the speed of the judged shaft changes its sign.
+    """
+
+    time: NDArray[np.float64]
+    samples: dict[str, NDArray[np.float64]]
+    zero_time: NDArray[np.float64]
+    zero_angle: NDArray[np.float64]
+
+
+NO_TRACK: Final = Track(np.empty(0), {}, np.empty(0), np.empty(0))
+"""Of a run that has been judged, or has not begun."""
+
+
 @dataclass(frozen=True, slots=True)
 class TrainSolution:
     """Result of one run of a train.
@@ -72,6 +98,12 @@ class TrainSolution:
     reached, start : float
         Time reached, and that at which the run began [s].
     statistics : Statistics
+    track : Track, optional
+        What the run is judged by.
+    extremes : Extremes, optional
+        Of the judged shaft; None of a run that has not been judged.
+    held_by : tuple of str
+        Names of what holds the judged shaft.
     checkpoint : ndarray of 8-byte words, optional
         State at the end, from which another run can go on; None where there is none.
     """
@@ -90,4 +122,42 @@ class TrainSolution:
     reached: float
     start: float
     statistics: Statistics
+    track: Track = NO_TRACK
+    extremes: Extremes | None = None
+    held_by: tuple[str, ...] = ()
     checkpoint: Words | None = None
+
+    @classmethod
+    def none(cls, shafts: Sequence[str], meshes: Sequence[str], status: str, message: str) -> TrainSolution:
+        """Solution of a run that produced nothing: numbers are NaN, counts 0."""
+        counts, nothing = {"mesh_exits"}, np.empty(0)
+        totals = {
+            side: {name: np.full(len(parts), 0.0 if name in counts else np.nan) for name in names}
+            for side, parts, names in (("shafts", shafts, SHAFT_TOTALS), ("meshes", meshes, MESH_TOTALS))
+        }
+        whole: NDArray[Any] = np.empty(0, np.int64)
+        events: dict[str, NDArray[Any]] = dict.fromkeys(("kind", "pair", "flank", "mesh", "shaft"), whole)
+        return cls(
+            shafts=tuple(shafts),
+            meshes=tuple(meshes),
+            time=nothing,
+            samples={
+                **{name: np.empty((len(shafts), 0)) for name in SHAFT_SAMPLES},
+                **{name: np.empty((len(meshes), 0)) for name in MESH_SAMPLES},
+                **dict.fromkeys(COMMON_SAMPLES, nothing),
+            },
+            events={**events, **dict.fromkeys(("time", "gap_rate", "force"), nothing)},
+            shaft_totals=totals["shafts"],
+            mesh_totals=totals["meshes"],
+            energy=dict.fromkeys(ENERGIES, math.nan),
+            rests={"shaft": whole, "begin": nothing, "end": nothing},
+            status=status,
+            message=message,
+            reached=0.0,
+            start=0.0,
+            statistics=Statistics(),
+        )
+
+
+AnySolution: TypeAlias = Solution | TrainSolution
+"""Result of a run of whatever scene."""

@@ -7,21 +7,25 @@ from collections import deque
 from collections.abc import Callable, Sequence
 from concurrent.futures import BrokenExecutor, Executor, Future
 from dataclasses import replace
+from functools import partial
 from queue import SimpleQueue
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from gearidae.archive.output_selection import OutputSelection
 from gearidae.archive.sample_table import SampleTable
 from gearidae.archive.stack import stack
+from gearidae.archive.train.stack import stack_trains
 from gearidae.archive.variables import VERDICT
 from gearidae.errors import SceneError
 from gearidae.progress import SweepProgress
+from gearidae.records import Solution
 from gearidae.runs.run_cache import RunCache
 from gearidae.runs.run_result import RunResult, crashed, solve_and_leave, solve_group
-from gearidae.runs.running import unsolved
+from gearidae.runs.running import nothing_of
 from gearidae.runs.sweep_plan import SweepPlan
+from gearidae.scene import is_long_train
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -66,7 +70,9 @@ class Batch:
         self._kept = kept
         self._keep = keep
         # samples go to where the dataset has them as soon as they are there: they are in memory once
-        self._samples = SampleTable(keep.columns(plan.base), len(plan.scenes), plan.base.run.sample_count)
+        self._of_trains = is_long_train(plan.base)
+        columns = () if self._of_trains else keep.columns(plan.base)
+        self._samples = SampleTable(columns, len(plan.scenes), plan.base.run.sample_count)
         self._done: dict[int, RunResult] = {}
         self._under_way: dict[int, float] = {}  # share that is done of the runs that have begun
         self._counting = threading.Lock()
@@ -103,18 +109,16 @@ class Batch:
 
     def dataset(self) -> xr.Dataset:
         """Put what the runs have left behind into one dataset; runs that are missing were interrupted."""
-        none = unsolved("interrupted", "the sweep was interrupted before this run was finished")
+        none = nothing_of(
+            self._plan.base, "interrupted", "the sweep was interrupted before this run was finished"
+        )
         missing = RunResult(none, "unfinished")
         results = [self._done.get(number, missing) for number in range(len(self._scenes))]
-        solutions = [result.solution for result in results]
-        ds = stack(
-            self._plan.base,
-            self._plan.axes,
-            self._plan.scenes,
-            solutions,
-            keep=self._keep,
-            samples=self._samples,
+        solutions: list[Any] = [result.solution for result in results]
+        stacked: Callable[..., xr.Dataset] = (
+            stack_trains if self._of_trains else partial(stack, samples=self._samples)
         )
+        ds = stacked(self._plan.base, self._plan.axes, self._plan.scenes, solutions, keep=self._keep)
         if self._keep.names is None:
             return ds
         dims = ds["status"].dims
@@ -231,7 +235,8 @@ class Batch:
             self._store(number, left)
 
     def _store(self, number: int, left: RunResult) -> None:
-        slim = self._samples.take(number, left.solution)
+        if isinstance(left.solution, Solution):
+            left = replace(left, solution=self._samples.take(number, left.solution))
         with self._counting:
-            self._done[number] = replace(left, solution=slim)
+            self._done[number] = left
             self._under_way.pop(number, None)

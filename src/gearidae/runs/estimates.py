@@ -18,6 +18,8 @@ from gearidae.scene.joints import joints
 
 _PASSES = 200  # to a speed whose friction depends on it
 _INNERMOST = -8.0  # a gap in roughnesses: teeth pressed deeper do not rest on their asperities
+TURNS_NOTHING = "must turn the gear, or initial.gear_speed be positive"
+"""What a drive must do whose mesh exits are waited for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,8 +118,7 @@ def waiting_speed(scene: GearScene) -> float:
     if not 0.0 < speed < math.inf:
         speed = scene.initial.gear_speed
     if speed <= 0.0:
-        allowed = "must turn the gear, or initial.gear_speed be positive"
-        raise SceneError("drive.torque", scene.drive.torque, allowed)
+        raise SceneError("drive.torque", scene.drive.torque, TURNS_NOTHING)
     return speed
 
 

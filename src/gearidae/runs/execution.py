@@ -9,7 +9,7 @@ from concurrent.futures import Executor
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypedDict, TypeVar
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypedDict, TypeVar, cast
 
 import xarray as xr
 
@@ -24,7 +24,7 @@ from gearidae.runs.running import SomeScene, prepare, with_samples
 
 if TYPE_CHECKING:
     from gearidae.progress import SweepProgress
-    from gearidae.records import Solution
+    from gearidae.records.train_results import AnySolution
     from gearidae.scene import Scene
 
 
@@ -43,8 +43,9 @@ class Store(Protocol):
         """Leave them as they are."""
 
 
-SideBySide: TypeAlias = Callable[..., Iterator[tuple["Solution", str]]]
+SideBySide: TypeAlias = Callable[..., Iterator[tuple["AnySolution", str]]]
 Kept = TypeVar("Kept", bound=Store)
+Solved = TypeVar("Solved", bound="AnySolution")
 
 
 class RunOptions(TypedDict, total=False):
@@ -133,7 +134,7 @@ class Execution:
 
             def run(
                 function: Any, scenes: Sequence[Scene], *arguments: Any
-            ) -> Iterator[tuple[Solution, str]]:
+            ) -> Iterator[tuple[AnySolution, str]]:
                 for solved in solutions(kept, executor, function, scenes, *arguments, self.backend):
                     yield solved
                     report(float(min(next(done), usual)), usual)  # of what has been taken in
@@ -142,10 +143,14 @@ class Execution:
 
 
 def prepared(
-    scene: SomeScene, options: RunOptions, *, samples: int | str | None = None
+    scene: SomeScene, options: RunOptions, *, samples: int | str | None = None, trains: bool = False
 ) -> tuple[SomeScene, Execution]:
-    """Check the scene and the options of a study, before anything is run; `samples` are in place of the scene's."""
-    base = with_samples(prepare(scene, rtol=None, samples=samples, backend=options.get("backend", "auto")))
+    """Check the scene and the options of a study, before anything is run; `samples` are in place of the scene's.
+
+    `trains` says whether it runs trains of several meshes, too.
+    """
+    backend = options.get("backend", "auto")
+    base = with_samples(prepare(scene, rtol=None, samples=samples, backend=backend, trains=trains))
     return base, Execution(**options, method=base.run.method)
 
 
@@ -315,10 +320,10 @@ def origin_of(scene: Scene) -> dict[str, str]:
 def solutions(
     kept: RunCache | None,
     executor: Executor | None,
-    function: Callable[..., tuple[Solution, str]],
+    function: Callable[..., tuple[Solved, str]],
     scenes: Sequence[Scene],
     *arguments: Any,
-) -> Iterator[tuple[Solution, str]]:
+) -> Iterator[tuple[Solved, str]]:
     """Take runs that are kept, compute the others side by side, and keep those that finish.
 
     Parameters
@@ -328,7 +333,7 @@ def solutions(
 
     Yields
     ------
-    Solution, str
+    Solution or TrainSolution, str
         In the order of the scenes.
     """
     taken = [None if kept is None else kept.take(scene) for scene in scenes]
@@ -337,7 +342,7 @@ def solutions(
     fresh = side_by_side(executor, function, left, *repeated)
     for scene, entry in zip(scenes, taken, strict=True):
         if entry is not None:
-            yield entry[0], str(entry[1].get("verdict", ""))
+            yield cast("Solved", entry[0]), str(entry[1].get("verdict", ""))
             continue
         solution, word = next(fresh)
         if kept is not None and solution.status == "finished":

@@ -20,6 +20,7 @@ from gearidae.archive.provenance import SCHEMA_VERSION, provenance
 from gearidae.archive.variables import VERDICT
 from gearidae.errors import SceneError
 from gearidae.records import ROWS, EnergyBalance, Extremes, Solution, Statistics
+from gearidae.records.train_results import AnySolution, TrainSolution
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
@@ -28,6 +29,9 @@ _LAYOUT = 9
 """Version of what is kept of a run."""
 _STATISTICS = tuple(field.name for field in fields(Statistics) if field.name not in ("ending", "fold_gap"))
 """What is kept of the statistics; a run that is kept has finished."""
+_TRAIN_HEADER = ("shafts", "meshes", "status", "message", "reached", "start", "energy", "extremes", "held_by")
+_TRAIN_TOTALS, _TRAIN_ROWS = ("shaft_totals", "mesh_totals"), ("events", "rests")
+"""Fields of the solution of a train, in the header of its frame and in tables."""
 
 
 def circumstances(scene: Scene, backend: str) -> dict[str, Any]:
@@ -106,16 +110,18 @@ class RunCache:
         """Hash of a scene and of all else that its result depends on."""
         return name_of(scene, self._circumstances)
 
-    def keep(self, scene: Scene, solution: Solution, judged: Mapping[str, str | int] | None = None) -> None:
+    def keep(
+        self, scene: Scene, solution: AnySolution, judged: Mapping[str, str | int] | None = None
+    ) -> None:
         """Write a finished run, or what it leaves behind and how it was judged, a value for each of `VERDICT`.
 
         A run that cannot be kept is no reason to stop; that is said in one warning for the sweep.
         """
-        header = _header(solution, {name: (judged or {}).get(name) for name in VERDICT})
-        tables = {
-            "samples": np.stack([solution.time, *solution.samples.values()]),
-            **{kind.field: getattr(solution, kind.field).table() for kind in ROWS},
-        }
+        words = {name: (judged or {}).get(name) for name in VERDICT}
+        if isinstance(solution, TrainSolution):
+            header, tables = _of_train(solution, words)
+        else:
+            header, tables = _of_pair(solution, words)
         key = self.key(scene)
         try:
             if self._journal is None:
@@ -126,14 +132,15 @@ class RunCache:
                 warnings.warn(f"finished runs cannot be kept in {self.path} ({error})", stacklevel=2)
             self._warned = True
 
-    def take(self, scene: Scene) -> tuple[Solution, dict[str, Any]] | None:
+    def take(self, scene: Scene) -> tuple[AnySolution, dict[str, Any]] | None:
         """Read a run back, with how it was judged; that is empty if it was not. None if it is not there."""
         begin = self._runs.get(self.key(scene))
         if begin is None or self._journal is None:
             return None
         try:
             frame = self._journal.frame(begin)
-            return _rebuilt(frame.header, {name: self._journal.table(frame, name) for name in frame.shapes})
+            tables = {name: self._journal.table(frame, name) for name in frame.shapes}
+            return (_train_rebuilt if "shafts" in frame.header else _rebuilt)(frame.header, tables)
         except (
             OSError,
             KeyError,
@@ -202,9 +209,12 @@ def _refuse_older(archive: Path) -> None:
         raise SceneError("archive", archive, allowed)
 
 
-def _header(solution: Solution, judged: dict[str, Any]) -> dict[str, Any]:
-    """All of a run but its samples and rows."""
-    return {
+Tables = dict[str, NDArray[Any]]
+
+
+def _of_pair(solution: Solution, judged: dict[str, Any]) -> tuple[dict[str, Any], Tables]:
+    """Header and tables of a run: its samples and rows, and all else."""
+    header = {
         "judged": judged,
         "columns": list(solution.samples),
         "statistics": {name: getattr(solution.statistics, name) for name in _STATISTICS},
@@ -214,6 +224,62 @@ def _header(solution: Solution, judged: dict[str, Any]) -> dict[str, Any]:
         "balance": solution.balance,
         "extremes": solution.extremes,
     }
+    return header, {
+        "samples": np.stack([solution.time, *solution.samples.values()]),
+        **{kind.field: getattr(solution, kind.field).table() for kind in ROWS},
+    }
+
+
+def _of_train(solution: TrainSolution, judged: dict[str, Any]) -> tuple[dict[str, Any], Tables]:
+    """Header and tables of a run of a train."""
+    samples = solution.samples
+    header = {
+        "judged": judged,
+        "columns": {name: len(values) if values.ndim > 1 else 0 for name, values in samples.items()},
+        "statistics": {name: getattr(solution.statistics, name) for name in _STATISTICS},
+        **{name: getattr(solution, name) for name in _TRAIN_HEADER},
+        **{
+            name: {key: values.tolist() for key, values in getattr(solution, name).items()}
+            for name in _TRAIN_TOTALS
+        },
+    }
+    rows = [values.reshape(-1, solution.time.size) for values in samples.values()]
+    return header, {
+        "samples": np.concatenate([solution.time[None], *rows]),
+        **{name: _table(getattr(solution, name)) for name in _TRAIN_ROWS},
+    }
+
+
+def _table(columns: Mapping[str, NDArray[Any]]) -> NDArray[np.float64]:
+    """Columns as rows of a table, in the order of their names."""
+    return np.array([columns[name] for name in sorted(columns)], dtype=np.float64)
+
+
+def _train_rebuilt(
+    header: dict[str, Any], tables: Mapping[str, NDArray[Any]]
+) -> tuple[TrainSolution, dict[str, Any]]:
+    """Make a run of a train of its header and its tables."""
+    none = TrainSolution.none(header["shafts"], header["meshes"], "", "")
+    time, *columns = tables.get("samples", np.empty((1, 0)))
+    left, samples = iter(columns), {}
+    for name, count in header["columns"].items():
+        samples[name] = np.array([next(left) for _ in range(count)]) if count else next(left).copy()
+    made: dict[str, Any] = {}
+    for name in _TRAIN_ROWS:
+        kinds = {key: column.dtype for key, column in getattr(none, name).items()}
+        rows = zip(sorted(kinds), tables.get(name, np.empty((len(kinds), 0))), strict=True)
+        made[name] = {key: row.astype(kinds[key]) for key, row in rows}
+    totals: dict[str, Any] = {
+        name: {key: np.array(values) for key, values in header[name].items()} for name in _TRAIN_TOTALS
+    }
+    fields: dict[str, Any] = {name: header[name] for name in _TRAIN_HEADER}
+    fields |= {name: tuple(header[name]) for name in ("shafts", "meshes", "held_by")}
+    fields["extremes"] = header["extremes"] and _extremes(header["extremes"])
+    statistics = Statistics(**header["statistics"])
+    solution = TrainSolution(
+        time=time.copy(), samples=samples, statistics=statistics, **fields, **made, **totals
+    )
+    return solution, _judged(header)
 
 
 def _rebuilt(header: dict[str, Any], tables: Mapping[str, NDArray[Any]]) -> tuple[Solution, dict[str, Any]]:
@@ -232,9 +298,20 @@ def _rebuilt(header: dict[str, Any], tables: Mapping[str, NDArray[Any]]) -> tupl
         message=header["message"],
         reached=header["reached"],
         balance=header["balance"] and EnergyBalance(header["balance"]),
-        extremes=extremes and Extremes({**extremes, "exposures": array("d", extremes["exposures"])}),
+        extremes=extremes and _extremes(extremes),
         **rows,
     )
+    return solution, _judged(header)
+
+
+def _extremes(numbers: dict[str, Any]) -> Extremes:
+    return Extremes(
+        {**numbers, **{name: array("d", numbers[name]) for name in ("exposures", "standstill_list")}}
+    )
+
+
+def _judged(header: dict[str, Any]) -> dict[str, Any]:
+    """How a run has been judged."""
     judged = {name: header["judged"][name] for name in VERDICT}
     kinds = {name: str if variable.dtype is np.str_ else int for name, variable in VERDICT.items()}
-    return solution, {name: kinds[name](value) for name, value in judged.items() if value is not None}
+    return {name: kinds[name](value) for name, value in judged.items() if value is not None}

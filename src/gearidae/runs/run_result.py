@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from gearidae.analysis.verdict.judge import verdict_of
 from gearidae.archive.output_selection import OutputSelection
 from gearidae.errors import SceneError
-from gearidae.records import Solution
-from gearidae.runs.running import solve, unsolved
+from gearidae.records.train_results import AnySolution
+from gearidae.runs.running import nothing_of, solve_any
 from gearidae.scene import Scene
 
 
@@ -19,7 +19,7 @@ class RunResult:
 
     Attributes
     ----------
-    solution : Solution
+    solution : Solution or TrainSolution
         Without the parts that are not kept.
     verdict : str
         Its outcome in one word, if parts are not kept; empty if all are.
@@ -27,7 +27,7 @@ class RunResult:
         Contacts made, and how often contact went over to the other flank, likewise.
     """
 
-    solution: Solution
+    solution: AnySolution
     verdict: str = ""
     impacts: int = 0
     flank_changes: int = 0
@@ -45,10 +45,10 @@ def solve_and_leave(
     on_progress : callable, optional
         As for `gearidae.runs.running.solve`.
     """
-    return leave(scene, solve(scene, backend, on_progress), keep)
+    return leave(scene, solve_any(scene, backend, on_progress), keep)
 
 
-def leave(scene: Scene, solution: Solution, keep: OutputSelection) -> RunResult:
+def leave(scene: Scene, solution: AnySolution, keep: OutputSelection) -> RunResult:
     """Judge a run and drop what is not kept of it."""
     if keep.names is None:
         return RunResult(solution)
@@ -57,7 +57,7 @@ def leave(scene: Scene, solution: Solution, keep: OutputSelection) -> RunResult:
 
 def crashed(scene: Scene, error: Exception, keep: OutputSelection) -> RunResult:
     """Return what is left of a run that died, such as of memory that ran out."""
-    return leave(scene, unsolved("crashed", f"{type(error).__name__}: {error}"), keep)
+    return leave(scene, nothing_of(scene, "crashed", f"{type(error).__name__}: {error}"), keep)
 
 
 def solve_group(scenes: Sequence[Scene], backend: str, keep: OutputSelection) -> list[RunResult]:

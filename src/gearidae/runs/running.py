@@ -16,6 +16,7 @@ import numpy as np
 from gearidae.errors import SceneError, SolverError
 from gearidae.records import Block, EventKind, Events, Flank, Solution, Statistics
 from gearidae.records.standing import Holding
+from gearidae.records.train_results import AnySolution, TrainSolution
 from gearidae.scene import Scene, TrainScene, is_long_train, require_gears
 from gearidae.scene.prefixes import with_prefix
 
@@ -151,6 +152,26 @@ def solve(
         return unsolved("failed", str(error))
 
 
+def solve_any(
+    scene: Scene, backend: str, on_progress: Callable[[float, int], None] | None = None
+) -> AnySolution:
+    """Run a scene as `solve` does, or a train of several meshes."""
+    if not is_long_train(scene):
+        return solve(scene, backend, on_progress)
+    from gearidae.runs.train_run import run_train  # which few runs need
+
+    def report(time: float, events: int) -> None:
+        if is_halted():
+            raise KeyboardInterrupt
+        if on_progress is not None:
+            on_progress(time, events)
+
+    try:
+        return run_train(scene, backend, report)
+    except SolverError as error:
+        return nothing_of(scene, "failed", str(error))
+
+
 def watched(report: RunReport, on_block: engine.OnBlock | None) -> engine.OnBlock:
     """Return what looks at every block of a run, says to its report whether the gear stands, and calls `on_block`."""
 
@@ -173,7 +194,15 @@ def solve_to_end(scene: Scene, backend: str, start: engine.Start | None = None) 
     return solution
 
 
-def unfinished(solution: Solution, what: str) -> SolverError:
+def solve_any_to_end(scene: Scene, backend: str) -> AnySolution:
+    """Run a scene as `solve_to_end` does, or a train of several meshes."""
+    solution = solve_any(scene, backend)
+    if solution.status == "interrupted":
+        raise KeyboardInterrupt
+    return solution
+
+
+def unfinished(solution: AnySolution, what: str) -> SolverError:
     """Error of a study whose run, named by `what`, has not come to its end."""
     return SolverError(
         f"{what} could not be finished: {solution.message or solution.status}",
@@ -258,6 +287,13 @@ def _last_event(ds: xr.Dataset) -> str:
     flank: Any = Flank(int(last["event_flank"]))
     where = "" if flank is Flank.NONE else f" of pair {int(last['event_pair'])} ({flank.name.lower()} flank)"
     return f"{kind}{where} at {float(last['event_time']):.9g} s"
+
+
+def nothing_of(scene: Scene, status: str, message: str) -> AnySolution:
+    """Solution of a run of a scene that produced nothing, see `unsolved`."""
+    if is_long_train(scene):
+        return TrainSolution.none([*scene.shafts], [*scene.meshes], status, message)
+    return unsolved(status, message)
 
 
 _of_this_thread = threading.local()

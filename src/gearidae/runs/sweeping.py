@@ -9,7 +9,7 @@ from concurrent.futures import Executor
 from typing import TYPE_CHECKING, Any
 
 from gearidae.archive.output_selection import EVERYTHING, OutputSelection, read_keep
-from gearidae.errors import Interrupted, SceneError
+from gearidae.errors import Interrupted
 from gearidae.progress import SweepProgress, sweep_progress
 from gearidae.runs.batch import Batch
 from gearidae.runs.execution import Execution, origin_of, run_kept
@@ -18,8 +18,7 @@ from gearidae.runs.kept_validity import with_validity
 from gearidae.runs.run_cache import RunCache
 from gearidae.runs.running import prepare
 from gearidae.runs.sweep_plan import SweepPlan, plan_sweep
-from gearidae.runs.train_sweep import refuse_unlike, run_trains
-from gearidae.scene import is_long_train
+from gearidae.runs.train_sweep import refuse_unlike
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -95,7 +94,7 @@ def sweep(
         part (``sam_fraction``). Events lie on one flat ``event`` dimension, labelled by
         ``event_<dimension>``. A run that could not go on says so in its ``status`` and is NaN from there on;
         the others are not affected.
-        Of trains ``shaft`` and ``mesh`` stand between the swept keys and ``time``; `keep` and `resume` are refused.
+        Of trains ``shaft`` and ``mesh`` stand between the swept keys and ``time``.
 
     Raises
     ------
@@ -114,10 +113,6 @@ def sweep(
     >>> ds.gear_speed.sel(sam_fraction=0.5).min()  # doctest: +SKIP
     """
     base = prepare(scene, rtol=rtol, t_end=t_end, samples=samples, backend=backend, trains=True)
-    if keep is not None and is_long_train(base):
-        raise SceneError(
-            "keep", keep, "is not for trains of several meshes: everything is kept of their runs"
-        )
     parts = read_keep(keep, base)
     if not parts.columns(base):
         base = base.replace({"run.samples": "off"})
@@ -125,8 +120,6 @@ def sweep(
         executor, jobs, backend, progress, archive, overwrite, resume, base.run.method, compress
     )
     plan = plan_sweep(base, over, zipped=zipped)
-    if is_long_train(base):
-        refuse_unlike(plan, execution)
     return run_study(plan, execution, {}, keep=parts)
 
 
@@ -162,6 +155,7 @@ def run_study(
         On Ctrl-C, with the runs so far as its ``dataset``; `archive` holds the same and can be resumed.
     """
     keep = read_keep(("extremes",), plan.base) if keep is None else keep
+    refuse_unlike(plan)
     asked = "" if keep.names is None else json.dumps(keep.asked)
     expected = {
         **origin_of(plan.base), "swept": plan.swept, "zipped": plan.zipped, "keep": asked, **about,
@@ -200,10 +194,6 @@ def run_plan(
     Interrupted
         On Ctrl-C, with the runs that are finished; the others are marked.
     """
-    if is_long_train(plan.base):
-        ds = run_trains(plan, execution)
-        log_imbalance(ds)
-        return ds
     with sweep_progress(execution.progress, len(plan.scenes), lambda: execution.words(plan.scenes)) as report:
         batch = Batch(plan, execution.backend, report, kept, keep)
         try:

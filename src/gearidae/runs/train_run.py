@@ -14,6 +14,7 @@ from gearidae.runs.running import early_end
 if TYPE_CHECKING:
     import xarray as xr
 
+    from gearidae.records.train_results import TrainSolution
     from gearidae.scene import TrainScene
 
 
@@ -63,24 +64,25 @@ def simulate_train(
 
 def _run(scene: TrainScene, backend: str, progress: bool | RunProgress) -> xr.Dataset:
     with run_progress(progress, scene.run.duration) as report:
-        ds = run_train(scene, backend, report)
-    from gearidae.archive.train import judged_view
+        solution = run_train(scene, backend, report)
+    from gearidae.archive.train import judged_view, train_dataset
     from gearidae.runs.imbalance import log_imbalance
 
+    ds = train_dataset(scene, solution)
     log_imbalance(judged_view(ds))
     return ds
 
 
-def run_train(scene: TrainScene, backend: str, on_progress: Callable[[float, int], None]) -> xr.Dataset:
+def run_train(
+    scene: TrainScene, backend: str, on_progress: Callable[[float, int], None] | None = None
+) -> TrainSolution:
     """Run a train and judge it, with a status that says how it ended."""
     from gearidae.engine.train import solve_train  # what reads results does without it
 
     solution = solve_train(scene, backend=backend, on_progress=on_progress)
     from gearidae.analysis.verdict.train import judge_train
-    from gearidae.archive.train import train_dataset
 
-    judged = judge_train(scene, solution)
-    return train_dataset(scene, solution, judged.extremes, judged.held_by)
+    return judge_train(scene, solution)
 
 
 def _ended(ds: xr.Dataset) -> xr.Dataset:

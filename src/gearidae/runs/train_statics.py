@@ -18,12 +18,13 @@ from typing import Final
 import numpy as np
 
 from gearidae.arrays import Floats
-from gearidae.errors import SolverError
+from gearidae.errors import SceneError, SolverError
 from gearidae.mesh.involute import curvature_radii, separation
 from gearidae.mesh.pair_contact import PairContact, pair_contact
 from gearidae.mesh.train_modes import levers
-from gearidae.runs.estimates import mean_over_run
+from gearidae.runs.estimates import TURNS_NOTHING, mean_over_run
 from gearidae.scene import GearScene, TrainScene
+from gearidae.scene.judged import judged_pitch, judged_shaft
 from gearidae.scene.train import Train, TrainMesh
 
 _NEWTON: Final = 200
@@ -55,6 +56,25 @@ def steady_speed(scene: TrainScene) -> float:
         return 0.0
     slowing = linear + math.sqrt(linear**2 + 4.0 * float(drag @ ratio**3) * surplus)
     return 2.0 * surplus / slowing if slowing > 0.0 else math.inf
+
+
+def waiting_time(scene: TrainScene) -> float:
+    """Time of a pitch of the judged shaft [s], by which a study counts how long mesh exits take.
+
+    At `steady_speed`, or the initial speed without any.
+
+    Raises
+    ------
+    SceneError
+        If neither turns the train on.
+    """
+    shafts = scene.train.shafts
+    speed = steady_speed(scene)
+    if not 0.0 < speed < math.inf:
+        speed = scene.initial.gear_speed / float(shafts[scene.train.load].ratio)
+    if speed <= 0.0:
+        raise SceneError("drive.torque", scene.drive.torque, TURNS_NOTHING)
+    return judged_pitch(scene) / (speed * float(shafts[judged_shaft(scene)].ratio))
 
 
 def _own_torque(scene: TrainScene) -> float:

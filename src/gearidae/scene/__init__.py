@@ -17,6 +17,7 @@ from gearidae.scene.scene import (
     describe_keys,
     is_long_train,
     require_gears,
+    require_meshes,
 )
 from gearidae.scene.scene_display import differences, nearest_preset
 from gearidae.scene.shafts import Meshing, Shaft
@@ -58,4 +59,5 @@ __all__ = [
     "nearest_preset",
     "preset",
     "require_gears",
+    "require_meshes",
 ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from gearidae.errors import SceneError
@@ -34,6 +35,13 @@ def judged_mesh(scene: TrainScene) -> int:
     shaft, meshes = judged_shaft(scene), scene.train.meshes
     driven = [k for k, mesh in enumerate(meshes) if mesh.b == shaft]
     return (driven or [k for k, mesh in enumerate(meshes) if mesh.a == shaft])[0]
+
+
+def judged_pitch(scene: TrainScene) -> float:
+    """Pitch of the judged shaft [rad]: that of its gear in the mesh that counts."""
+    mesh = scene.train.meshes[judged_mesh(scene)]
+    driven = mesh.b == judged_shaft(scene)
+    return 2.0 * math.pi / (mesh.geometry.gear_teeth if driven else mesh.geometry.pinion_teeth)
 
 
 def refuse_judged(scene: Scene) -> None:

@@ -520,12 +520,23 @@ def require_gears(scene: Scene) -> GearScene:
             raise SceneError(
                 "meshes",
                 f"({len(scene.meshes)} meshes)",
-                "must be one here: trains of several are run by simulate and sweep alone; scene.pair(NAME) is a stage",
+                "must be one here: this is of a single pair; scene.pair(NAME) is a stage of the train",
             )
         return scene.pair(next(iter(scene.meshes)))
     if not isinstance(scene, GearScene):
         raise SceneError("scene", getattr(scene, "name", type(scene).__name__), "must be a scene with gears")
     return scene
+
+
+def require_meshes(scene: Scene) -> GearScene | TrainScene:
+    """Refuse anything but a scene with gears, a pair or a train, which is returned; of one mesh the short form.
+
+    Raises
+    ------
+    SceneError
+        If it is something else.
+    """
+    return scene if is_long_train(scene) else require_gears(scene)
 
 
 def describe_keys() -> tuple[KeyInfo, ...]:

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from gearidae.analysis.verdict.judge import has_stuck, is_scheduled
+from gearidae.archive.output_selection import TOTALS
 from gearidae.errors import SceneError, SolverError
-from gearidae.runs.running import solve_to_end, unfinished, unsolved
+from gearidae.runs.running import solve_any_to_end, unfinished
 from gearidae.scene.keys import scene_value
 
 if TYPE_CHECKING:
-    from gearidae.records import Extremes, Solution
+    from gearidae.records import Extremes
+    from gearidae.records.train_results import AnySolution
     from gearidae.scene import Scene
 
 _LONGEST = 8.0
@@ -47,7 +49,7 @@ class ThresholdRun:
     failure: SolverError | None = None
 
     @classmethod
-    def of(cls, value: float, solution: Solution, exits: int) -> ThresholdRun:
+    def of(cls, value: float, solution: AnySolution, exits: int) -> ThresholdRun:
         """Read the solution of a run until so many mesh exits."""
         extremes = solution.extremes
         if extremes is None or solution.status != "finished":
@@ -65,7 +67,7 @@ class ThresholdRun:
         return f"at {self.value:g} the gear is slow: {passes}"
 
 
-def run_until(scene: Scene, exits: int, backend: str) -> tuple[Solution, str]:
+def run_until(scene: Scene, exits: int, backend: str) -> tuple[AnySolution, str]:
     """Run a scene until the gear has stuck or passed so many exits, without its events.
 
     Parameters
@@ -79,11 +81,11 @@ def run_until(scene: Scene, exits: int, backend: str) -> tuple[Solution, str]:
     duration, longest = scene.run.duration, _LONGEST * scene.run.duration
     scheduled = is_scheduled(scene.to_dict())
     while True:
-        solution = solve_to_end(scene.replace({"run.duration": duration}), backend)
+        solution = solve_any_to_end(scene.replace({"run.duration": duration}), backend)
         extremes = solution.extremes
         slow = extremes is not None and _is_slow(extremes, exits)
         if scheduled or not slow or solution.status != "finished" or duration >= longest:
-            return replace(solution, events=unsolved("", "").events), ""
+            return TOTALS.thinned(solution), ""
         duration *= 2.0
 
 

@@ -12,27 +12,35 @@ from numpy.typing import NDArray
 from gearidae.analysis.verdict.codes import STUCK
 from gearidae.records import EventKind, Extremes, Solution
 from gearidae.records.standing import is_driven
-from gearidae.scene import Scene
+from gearidae.records.train_results import AnySolution, TrainSolution
+from gearidae.scene import Scene, TrainScene
+from gearidae.scene.judged import judged_mesh
 
 IRREGULAR_ABOVE = 0.25
 """A gear turns irregularly if its speed both falls and rises again by more than this fraction of its mean."""
 
 
-def verdict_of(scene: Scene, solution: Solution) -> tuple[str, int, int]:
+def verdict_of(scene: Scene, solution: AnySolution) -> tuple[str, int, int]:
     """Judge a run as the engine leaves it.
 
     Parameters
     ----------
-    solution : Solution
+    solution : Solution or TrainSolution
         Of a run that has its extremes; one without them is unfinished.
 
     Returns
     -------
     verdict : str
     impacts, flank_changes : int
-        Contacts made (onset events), and how often contact went over to the other flank.
+        Contacts made (onset events), and how often contact went over to the other flank; of a train in the mesh that
+        drives the judged shaft.
     """
-    kinds, extremes, status = solution.events.kind, solution.extremes, solution.status
+    extremes, status = solution.extremes, solution.status
+    if isinstance(solution, TrainSolution) and isinstance(scene, TrainScene):
+        kinds = solution.events["kind"][solution.events["mesh"] == judged_mesh(scene)]
+    else:
+        assert isinstance(solution, Solution)
+        kinds = solution.events.kind
     impacts, changes = (
         int(np.count_nonzero(kinds == kind)) for kind in (EventKind.ONSET, EventKind.FLANK_CHANGE)
     )

@@ -1,7 +1,7 @@
 """Outcome of a run of a train: extremes of its judged shaft, as those of a pair, and the names of what holds it.
 
-Intervals at rest and extremes of the speed come from the steps of the engine; changes of the speed, and its zeros
-without a rest, from the samples.
+Intervals at rest, zeros and extremes of the speed come from the steps of the engine; changes of the speed, and ways,
+from looks at the run that are as many for every one. Nothing of it depends on what is sampled.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from array import array
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
@@ -18,7 +19,8 @@ from gearidae.archive.train.work import MESH_LOSSES
 from gearidae.arrays import Floats
 from gearidae.records import RUN_PARTS, EventKind, Extremes
 from gearidae.records.standing import HALF_PITCH, SETTLED_WITHIN, Holding, stands
-from gearidae.scene.judged import judged_mesh, judged_shaft
+from gearidae.records.train_results import NO_TRACK
+from gearidae.scene.judged import judged_mesh, judged_pitch, judged_shaft
 
 if TYPE_CHECKING:
     from gearidae.records.train_results import TrainSolution
@@ -28,13 +30,6 @@ _LOOKS: Final = 500
 """Times of a standstill at which the drive is compared with the dry resistance."""
 _NOT_PASSED_ON: Final = 0.01
 """Share of the torque arriving at a shaft that must be missing for adhesion in its mesh to be named."""
-
-
-class Judged(NamedTuple):
-    """Extremes of the judged shaft, and names of all that holds it, such as ``hub friction of middle``."""
-
-    extremes: Extremes
-    held_by: tuple[str, ...]
 
 
 class _Standstill(NamedTuple):
@@ -56,33 +51,32 @@ class _Motion:
 
     def __init__(self, scene: TrainScene, solution: TrainSolution) -> None:
         self.shaft, self.mesh = judged_shaft(scene), judged_mesh(scene)
-        geometry = scene.train.meshes[self.mesh].geometry
-        driven = scene.train.meshes[self.mesh].b == self.shaft
-        self.pitch = 2.0 * math.pi / (geometry.gear_teeth if driven else geometry.pinion_teeth)
-        self.time, self.begin, self.end = solution.time, solution.start, solution.reached
-        self.speed = solution.samples["shaft_speed"][self.shaft]
-        self.angle = solution.samples["shaft_angle"][self.shaft]
+        self.pitch = judged_pitch(scene)
+        track = solution.track
+        self.time, self.begin, self.end = track.time, solution.start, solution.reached
+        self.speed, self.angle = (
+            track.samples[name][self.shaft] if track.time.size else np.empty(0)
+            for name in ("shaft_speed", "shaft_angle")
+        )
+        self.zero_time, self.zero_angle = track.zero_time, track.zero_angle
         rests = solution.rests
         mine = np.flatnonzero(rests["shaft"] == self.shaft)
         self.rests = [(float(rests["begin"][k]), float(rests["end"][k])) for k in mine]
 
     def at(self, t: float) -> float:
         """Angle at a time [rad]."""
-        return float(np.interp(t, self.time, self.angle))
+        at = np.flatnonzero(self.zero_time == t)
+        return float(self.zero_angle[at[0]] if at.size else np.interp(t, self.time, self.angle))
 
     def zeros(self) -> list[float]:
         """Times at which the speed is zero, or begins to be [s]."""
-        signs = np.sign(self.speed)
-        found = [begin for begin, _ in self.rests]
-        if signs.size and signs[0] == 0.0:
-            found.append(float(self.time[0]))
-        for k in np.flatnonzero(signs[:-1] * signs[1:] < 0.0):
-            share = self.speed[k] / (self.speed[k] - self.speed[k + 1])
-            found.append(float(self.time[k] + share * (self.time[k + 1] - self.time[k])))
-        return sorted(set(found))
+        found = {*self.zero_time.tolist(), *(begin for begin, _ in self.rests)}
+        if self.speed.size and self.speed[0] == 0.0:
+            found.add(float(self.time[0]))
+        return sorted(found)
 
 
-def judge_train(scene: TrainScene, solution: TrainSolution) -> Judged:
+def judge_train(scene: TrainScene, solution: TrainSolution) -> TrainSolution:
     """Judge a run of a train by its judged shaft.
 
     Parameters
@@ -90,12 +84,19 @@ def judge_train(scene: TrainScene, solution: TrainSolution) -> Judged:
     scene : Scene
         As it was run.
     solution : TrainSolution
-        With samples.
+        With its track.
 
     Returns
     -------
-    Judged
+    TrainSolution
+        With extremes and names of what holds the shaft, such as ``hub friction of middle``, in place of the track.
     """
+    extremes, held = _judgement(scene, solution)
+    return replace(solution, extremes=extremes, held_by=held, track=NO_TRACK)
+
+
+def _judgement(scene: TrainScene, solution: TrainSolution) -> tuple[Extremes, tuple[str, ...]]:
+    """Extremes of the judged shaft, and names of what holds it."""
     motion = _Motion(scene, solution)
     exits = _exits(solution, motion)
     numbers: dict[str, float] = {
@@ -108,7 +109,7 @@ def judge_train(scene: TrainScene, solution: TrainSolution) -> Judged:
         **_speeds(motion),
     }
     if motion.time.size < 2:
-        return Judged(Extremes(numbers), ())
+        return Extremes(numbers), ()
     free = FreeTrain(scene)
     numbers |= _back(motion, free)
     standstills = list(_standstills(motion, free))
@@ -121,7 +122,7 @@ def judge_train(scene: TrainScene, solution: TrainSolution) -> Judged:
         "start_time": started,
     }
     if ended:
-        torque = solution.samples["drive_torque"]
+        torque = solution.track.samples["drive_torque"]
         numbers["breakaway_torque"] = float(np.interp(started, motion.time, torque))
     held: tuple[str, ...] = ()
     if standstills and math.isnan(standstills[-1].end):
@@ -141,7 +142,7 @@ def judge_train(scene: TrainScene, solution: TrainSolution) -> Judged:
     elif numbers["turned_back"] > 0.0:
         numbers["stick_exits"] = int(np.count_nonzero(exits <= numbers["back_time"]))
     table = array("d", [float(number) for still in standstills for number in still])
-    return Judged(Extremes(numbers, standstill_list=table), held)
+    return Extremes(numbers, standstill_list=table), held
 
 
 def _exits(solution: TrainSolution, motion: _Motion) -> Floats:
@@ -284,10 +285,10 @@ def _holders(
 
 def _adhering(scene: TrainScene, solution: TrainSolution) -> list[str]:
     """Names of the meshes that drive a shaft at which more torque is missing than its friction can hold."""
-    train = scene.train
-    late = solution.time >= solution.start + RUN_PARTS[2] * (solution.reached - solution.start)
-    forces = solution.samples["mesh_force"][:, late].mean(axis=1)
-    loads = solution.samples["hub_load"][:, late].mean(axis=1)
+    train, track = scene.train, solution.track
+    late = track.time >= solution.start + RUN_PARTS[2] * (solution.reached - solution.start)
+    forces = track.samples["mesh_force"][:, late].mean(axis=1)
+    loads = track.samples["hub_load"][:, late].mean(axis=1)
     missing = []
     for number, (name, shaft) in enumerate(scene.shafts.items()):
         mine = [k for k, mesh in enumerate(train.meshes) if mesh.b == number]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,6 +11,7 @@ import xarray as xr
 
 from gearidae.archive.dataset import statistics_attributes
 from gearidae.archive.end_state import end_state_attributes
+from gearidae.archive.output_selection import EVERYTHING, OutputSelection
 from gearidae.archive.provenance import provenance
 from gearidae.archive.totals import standstills_as_text
 from gearidae.archive.train.variables import (
@@ -19,9 +20,11 @@ from gearidae.archive.train.variables import (
     ENERGY,
     EVENT_PLACES,
     MESH_TOTALS,
+    OF_JUDGED,
     REST_LIST,
     SHAFT_TOTALS,
     TRAIN_SAMPLES,
+    TWO_SHAFTS,
 )
 from gearidae.archive.train.work import efficiencies
 from gearidae.archive.variables import (
@@ -34,19 +37,17 @@ from gearidae.archive.variables import (
     TIME,
     run_label,
 )
+from gearidae.records import Extremes
 from gearidae.scene.judged import judged_mesh, judged_shaft
 
 if TYPE_CHECKING:
-    from gearidae.records import Extremes
     from gearidae.records.train_results import TrainSolution
     from gearidae.scene import TrainScene
     from gearidae.scene.train import Train
 
-_OF_JUDGED = tuple(name for name in EXTREMES if name not in {*MESH_TOTALS, *SHAFT_TOTALS, "min_separation"})
-
 
 def train_dataset(
-    scene: TrainScene, solution: TrainSolution, extremes: Extremes, held_by: Sequence[str] = ()
+    scene: TrainScene, solution: TrainSolution, keep: OutputSelection = EVERYTHING
 ) -> xr.Dataset:
     """Label one run of a train.
 
@@ -55,11 +56,9 @@ def train_dataset(
     scene : Scene
         The scene exactly as it was run.
     solution : TrainSolution
-        Result of the engine.
-    extremes : Extremes
-        Of the judged shaft.
-    held_by : sequence of str, optional
-        Names of what holds the shaft.
+        Result of the engine, judged.
+    keep : OutputSelection, optional
+        Which variables the dataset has; by default all.
 
     Returns
     -------
@@ -68,9 +67,11 @@ def train_dataset(
         judged one and ``pinion_`` for that of the drive, along ``time``; totals along ``shaft`` and ``mesh``; energies
         and extremes of the judged shaft without a dimension; events with their mesh and shaft. Everything in SI units.
     """
+    extremes = solution.extremes or Extremes()
     variables: dict[Hashable, Any] = {
         name: (variable.dims, solution.samples[name], variable.attributes)
         for name, variable in TRAIN_SAMPLES.items()
+        if name in solution.samples
     }
     variables |= _two_shafts(scene, solution)
     variables |= _events(scene, solution)
@@ -84,13 +85,13 @@ def train_dataset(
         known = EFFICIENCIES.get(name, ENERGY_TOTALS.get(name))
         assert known is not None
         variables[name] = (known.dims, values, known.attributes)
-    for name in _OF_JUDGED:
+    for name in OF_JUDGED:
         variables[name] = ((), np.asarray(extremes[name], EXTREMES[name].dtype), EXTREMES[name].attributes)
     variables[STANDSTILL_LIST.name] = ((), standstills_as_text(extremes), STANDSTILL_LIST.attributes)
     variables[REST_LIST.name] = ((), _rests(solution), REST_LIST.attributes)
     variables["reached"] = ((), solution.reached, OF_SWEPT_RUN["reached"].attributes)
     return xr.Dataset(
-        variables,
+        {name: entry for name, entry in variables.items() if keep.holds(str(name))},
         coords={
             "time": ("time", solution.time, TIME.attributes),
             **run_label(scene),
@@ -107,7 +108,7 @@ def train_dataset(
             "judged_shaft": scene.train.shafts[judged_shaft(scene)].name,
             "judged_mesh": scene.train.meshes[judged_mesh(scene)].name,
             "drive_shaft": scene.train.shafts[scene.train.drive].name,
-            **({"held_by": ", ".join(held_by)} if held_by else {}),
+            **({"held_by": ", ".join(solution.held_by)} if solution.held_by else {}),
             **end_state_attributes(solution.start, solution.checkpoint),
             "t_end": solution.start + scene.run.duration,
         },
@@ -133,12 +134,12 @@ def coordinates(train: Train, judged: int) -> dict[str, Any]:
 
 def _two_shafts(scene: TrainScene, solution: TrainSolution) -> dict[Hashable, Any]:
     """Samples by the names that a pair has: of the judged shaft, and of the drive's."""
-    made: dict[Hashable, Any] = {}
-    for side, number in (("gear", judged_shaft(scene)), ("pinion", scene.train.drive)):
-        for name, source in (("speed", "shaft_speed"), ("angle", "shaft_angle"), ("hub_load", "hub_load")):
-            variable = SAMPLES[f"{side}_{name}"]
-            made[variable.name] = (("time",), solution.samples[source][number], variable.attributes)
-    return made
+    numbers = {"gear": judged_shaft(scene), "pinion": scene.train.drive}
+    return {
+        name: (("time",), solution.samples[source][numbers[name.partition("_")[0]]], SAMPLES[name].attributes)
+        for name, source in TWO_SHAFTS.items()
+        if source in solution.samples
+    }
 
 
 def _events(scene: TrainScene, solution: TrainSolution) -> dict[Hashable, Any]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Hashable, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -11,14 +10,15 @@ import numpy as np
 import xarray as xr
 
 from gearidae.archive.dataset import dimension_names, key_labels, sweep_attributes
+from gearidae.archive.output_selection import EVERYTHING, OutputSelection
 from gearidae.archive.row_variables import add_row_labels
 from gearidae.archive.stack import Axis, leaders_of, with_zipped
-from gearidae.archive.train.dataset import coordinates
+from gearidae.archive.train.dataset import train_dataset
 from gearidae.archive.train.variables import ATTRIBUTES, COORDINATES, HELD_BY
 from gearidae.archive.variables import CONTACT, OF_SWEPT_RUN, RUN, SAM_FRACTION, Variable, run_label
-from gearidae.scene.judged import judged_shaft
 
 if TYPE_CHECKING:
+    from gearidae.records.train_results import TrainSolution
     from gearidae.scene import Scene, TrainScene
 
 _TOTALS = tuple(name for name, variable in RUN.items() if variable.dtype is np.int64)
@@ -28,7 +28,12 @@ _OF_RUN |= {variable.name: variable for variable in CONTACT} | {"skipped": OF_SW
 
 
 def stack_trains(
-    base: Scene, axes: Sequence[Axis], scenes: Sequence[TrainScene], members: Sequence[xr.Dataset]
+    base: Scene,
+    axes: Sequence[Axis],
+    scenes: Sequence[TrainScene],
+    solutions: Sequence[TrainSolution],
+    *,
+    keep: OutputSelection = EVERYTHING,
 ) -> xr.Dataset:
     """Put runs of trains into one dataset.
 
@@ -38,9 +43,10 @@ def stack_trains(
         What the runs have in common.
     axes : sequence of dict
         For each dimension, the values of its keys in SI units; several keys where they are zipped.
-    scenes, members : sequence
-        Of each run its scene, and its dataset from `gearidae.archive.train.train_dataset`; shafts and meshes have the
-        same names in all. The last axis changes fastest.
+    scenes, solutions : sequence
+        One for each run; shafts and meshes have the same names in all. The last axis changes fastest.
+    keep : OutputSelection, optional
+        Which variables the dataset has; by default all.
 
     Returns
     -------
@@ -51,6 +57,9 @@ def stack_trains(
     names = dimension_names(leaders)
     dims, shape = tuple(names.values()), tuple(len(values) for values in leaders.values())
     labels = {names[key]: key_labels(key, names[key], values) for key, values in leaders.items()}
+    members = [
+        train_dataset(scene, solution, keep) for scene, solution in zip(scenes, solutions, strict=True)
+    ]
     first, longest = members[0], max((member["time"] for member in members), key=len)
     members = [member.reindex(time=longest) for member in members]
 
@@ -61,7 +70,9 @@ def stack_trains(
         return (*dims, *over), array.reshape(*shape, *np.shape(values[0]))
 
     variables: dict[Hashable, Any] = {}
-    coords: dict[Hashable, Any] = {"time": ("time", longest.values, longest.attrs)}
+    coords: dict[Hashable, Any] = {}
+    if keep.columns(base):
+        coords["time"] = ("time", longest.values, longest.attrs)
     coords.update(labels)
     for name, variable in first.data_vars.items():
         parts = [member[name].values for member in members]
@@ -75,13 +86,16 @@ def stack_trains(
         over = first[name].dims
         values = (over, parts[0]) if alike else stacked(parts, parts[0].dtype, over)
         coords[name] = (*values, first[name].attrs)
-    add_row_labels(variables, "event", labels, [member.sizes["event"] for member in members])
+    if "event_time" in first:
+        add_row_labels(variables, "event", labels, [member.sizes["event"] for member in members])
     for name, known in _OF_RUN.items():
-        variables[name] = _column(known, [member.attrs[name] for member in members], dims, shape)
+        if keep.holds(name):
+            variables[name] = _column(known, [member.attrs[name] for member in members], dims, shape)
     held = [member.attrs.get("held_by", "") for member in members]
     variables[HELD_BY.name] = _column(HELD_BY, held, dims, shape)
-    inputs = [json.dumps(scene.to_dict(), allow_nan=False) for scene in scenes]
-    variables["scene"] = _column(OF_SWEPT_RUN["scene"], inputs, dims, shape)
+    if keep.holds("scene"):
+        inputs = [json.dumps(scene.to_dict(), allow_nan=False) for scene in scenes]
+        variables["scene"] = _column(OF_SWEPT_RUN["scene"], inputs, dims, shape)
     if SAM_FRACTION.name not in dims:
         coords.update({**run_label(base)})
     drivers = {name: {member.attrs[name] for member in members} - {""} for name in ("backend", "method")}
@@ -90,6 +104,7 @@ def stack_trains(
         coords=coords,
         attrs={
             **sweep_attributes(base, leaders, [member.attrs["status"] for member in members]),
+            **({} if keep.names is None else {"keep": json.dumps(keep.asked)}),
             **{name: sum(int(member.attrs[name]) for member in members) for name in _TOTALS},
             "wall_time": float(sum(member.attrs["wall_time"] for member in members)),
             **{name: ", ".join(sorted(texts)) for name, texts in drivers.items()},
@@ -97,32 +112,6 @@ def stack_trains(
         },
     )
     return with_zipped(ds, base, axes)
-
-
-def unfinished(like: xr.Dataset, scene: TrainScene) -> xr.Dataset:
-    """Make the dataset of a run that an interrupt has prevented: without samples and events, numbers are NaN or 0.
-
-    Parameters
-    ----------
-    like : xarray.Dataset
-        A finished run of the same sweep.
-    """
-    blank = like.isel(time=slice(0), event=slice(0)).assign_coords(
-        coordinates(scene.train, judged_shaft(scene))
-    )
-    for name, variable in blank.data_vars.items():
-        kind = variable.dtype.kind
-        nothing: Any = math.nan if kind == "f" else 0 if kind in "iub" else "[]"  # texts are lists
-        blank[name] = variable.copy(data=np.full(variable.shape, nothing, dtype=variable.dtype))
-    gone = {name: value for name, value in like.attrs.items() if name != "held_by"}
-    blank.attrs = {
-        **gone,
-        **dict.fromkeys(_TOTALS, 0),
-        "wall_time": 0.0,
-        "status": "interrupted",
-        "message": "the sweep was interrupted before this run was finished",
-    }
-    return blank
 
 
 def _column(

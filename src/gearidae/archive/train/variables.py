@@ -7,7 +7,8 @@ from typing import Final
 
 import numpy as np
 
-from gearidae.archive.variables import EXTREMES, SAMPLES, Variable
+from gearidae.archive.variables import EVENTS, EXTREMES, SAMPLES, STANDSTILL_LIST, Variable
+from gearidae.records.train_results import WORKS_OF_MESHES, WORKS_OF_SHAFTS
 
 SHAFT, MESH = ("shaft",), ("mesh",)
 
@@ -53,6 +54,13 @@ TRAIN_SAMPLES: Final[Mapping[str, Variable]] = {
         ),
     )
 }
+TWO_SHAFTS: Final[Mapping[str, str]] = {
+    f"{side}_{name}": source
+    for side in ("gear", "pinion")
+    for name, source in (("speed", "shaft_speed"), ("angle", "shaft_angle"), ("hub_load", "hub_load"))
+}
+"""Samples by the names that a pair has, ``gear`` for the judged shaft and ``pinion`` for the drive's, and those of all
+shafts that they are taken from."""
 SHAFT_TOTALS: Final[Mapping[str, Variable]] = {
     name: Variable(name, SHAFT, units, meaning)
     for name, units, meaning in (
@@ -135,6 +143,21 @@ REST_LIST: Final = Variable(
 )
 HELD_BY: Final = Variable("held_by", (), "1", "what holds the judged shaft, by names", np.str_)
 """Of each run of a sweep; of a single run it is an attribute."""
+_JUDGED_BESIDE = {*MESH_TOTALS, *SHAFT_TOTALS, "min_separation"}
+OF_JUDGED: Final = tuple(name for name in EXTREMES if name not in _JUDGED_BESIDE)
+"""Extremes of the judged shaft, without a dimension."""
+PARTS: Final[Mapping[str, tuple[str, ...]]] = {
+    "extremes": (
+        *OF_JUDGED,
+        *(name for name in SHAFT_TOTALS if name not in WORKS_OF_SHAFTS),
+        *(name for name in MESH_TOTALS if name not in WORKS_OF_MESHES),
+        STANDSTILL_LIST.name,
+    ),
+    "energy_balance": (*WORKS_OF_SHAFTS, *WORKS_OF_MESHES, *ENERGY, *EFFICIENCIES, "efficiency"),
+    "samples": (*TRAIN_SAMPLES, *TWO_SHAFTS),
+    "events": (*EVENTS, *EVENT_PLACES, REST_LIST.name, "impacts"),
+}
+"""What a run of a train leaves, by the groups of `gearidae.archive.output_selection`."""
 ATTRIBUTES: Final = ("judged_shaft", "judged_mesh", "drive_shaft")
 """Attributes that all runs of a sweep have in common."""
 ALL: Final[Mapping[str, Variable]] = {

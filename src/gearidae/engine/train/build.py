@@ -21,6 +21,7 @@ from gearidae.engine.train.start import begin_train
 from gearidae.errors import SceneError
 from gearidae.scene import Drive, GearScene, Load
 from gearidae.scene.joints import pushes
+from gearidae.scene.judged import judged_shaft
 from gearidae.scene.pitch_errors import error_on_path
 from gearidae.scene.scene import TrainScene
 from gearidae.scene.train import Train
@@ -227,7 +228,7 @@ def _add_shafts(tm: TrainModel, scene: TrainScene, train: Train) -> None:
 def _add_train(tm: TrainModel, scene: TrainScene, train: Train, problems: tuple[Problem, ...]) -> None:
     """Set what is of the train as a whole."""
     record, drive, run = tm.train[0], scene.drive, scene.run
-    record.drive, record.load = train.drive, train.load
+    record.drive, record.load, record.judged = train.drive, train.load, judged_shaft(scene)
     record.drive_mesh, record.load_mesh = _ends(train)
     if problems[record.load_mesh].model.scene.dry != 0:
         tm.shafts[train.load]["rubs"] = 1

@@ -98,6 +98,7 @@ TRAIN: Final = record_type(
     ("start", REAL),  # [s]
     ("end", REAL),  # [s]
     ("samples", INT),
+    ("judged", INT),  # shaft that is judged
     ("stop_pitches", REAL),  # way of the load's gear at which the run ends; infinite for none
     ("longest_step", REAL),  # [s]
     ("rest_step", REAL),  # longest while a shaft is held [s]
@@ -113,7 +114,10 @@ TRAIN: Final = record_type(
     ("roots", INT),  # in close succession
     ("last_root", REAL),  # [s]
     ("next_sample", INT),
+    ("next_look", INT),
     ("rows", INT),  # in the present block
+    ("looks", INT),
+    ("zeros", INT),
     ("events", INT),
     ("rests", INT),
     ("fresh", INT),  # 1 if the rates at the accepted time have to be evaluated
@@ -205,19 +209,23 @@ name_type(blank_train(1, 1), "TrainModel")
 
 
 class TrainOutput(NamedTuple):
-    """Samples, events and rests of a block, before it is taken over.
+    """Samples, looks, zeros, events and rests of a block, before it is taken over.
 
     Attributes
     ----------
-    samples : ndarray, shape (n, columns)
-        See `gearidae.engine.train.observe.observe_train`.
+    samples, looks : ndarray, shape (n, columns)
+        See `gearidae.engine.train.observe.observe_train`; looks are those by which a run is judged.
+    zeros : ndarray, shape (k, 2)
+        Times [s] and angles [rad] at which the speed of the judged shaft changes its sign.
     events, rests : ndarray, shape (k, numbers)
         See `gearidae.engine.train.record`.
     """
 
     samples: NDArray[np.float64]
+    looks: NDArray[np.float64]
+    zeros: NDArray[np.float64]
     events: NDArray[np.float64]
     rests: NDArray[np.float64]
 
 
-name_type(TrainOutput(*(np.zeros((1, 1)) for _ in range(3))), "TrainOutput")
+name_type(TrainOutput(*(np.zeros((1, 1)) for _ in range(5))), "TrainOutput")

@@ -24,9 +24,12 @@ from gearidae.engine.train.observe import (
     follow_forces,
     follow_shafts,
     observe_train,
+    shaft_angle,
     wants_polynomial,
 )
 from gearidae.engine.train.rest import any_held
+from gearidae.formulas.interpolation import cubic
+from gearidae.formulas.roots import HALVINGS, zero_of_cubic
 
 UNDERFLOW: Final = -3
 """IDA's flag for steps that have become too small."""
@@ -37,6 +40,10 @@ LAST: Final = 1e-10
 CLOSE: Final = 1e-15
 """Of the time: a root is known to that."""
 SEARCHES: Final = 100
+LOOKS: Final = 2001
+"""Times at which every run is looked at to be judged, whatever is sampled: enough for mean speeds and their spread.
+
+Where shafts come to rest or turn round is known besides."""
 
 
 @compiled
@@ -68,14 +75,65 @@ def locate(tm: TrainModel, h: float) -> float:
 
 
 @compiled
-def sample_due(tm: TrainModel, index: int) -> float:
-    """Time of a sample [s]: the first at the start, the last at the end itself, none beyond."""
+def _due(tm: TrainModel, index: int, count: int) -> float:
+    """Time of one of so many looks at a run [s]: the first at the start, the last at the end itself, none beyond."""
     train = tm.train[0]
-    if index >= train.samples:
+    if index >= count:
         return math.inf
-    if index == train.samples - 1:
+    if index == count - 1:
         return float(train.end)
-    return float(train.start + index * ((train.end - train.start) / (train.samples - 1)))
+    return float(train.start + index * ((train.end - train.start) / (count - 1)))
+
+
+@compiled
+def sample_due(tm: TrainModel) -> float:
+    """Time of the coming sample [s]."""
+    return _due(tm, tm.train[0].next_sample, tm.train[0].samples)
+
+
+@compiled
+def look_due(tm: TrainModel) -> float:
+    """Time of the coming look by which the run is judged [s]."""
+    return _due(tm, tm.train[0].next_look, LOOKS)
+
+
+@compiled
+def _sample_step(tm: TrainModel, time: float, h: float, out: TrainOutput) -> bool:
+    """Write the samples and looks of a step up to a time, by its polynomial; whether the block had room for them."""
+    train, n = tm.train[0], 2 * len(tm.shafts)
+    due = sample_due(tm)
+    while due <= time:
+        if train.rows >= out.samples.shape[0]:
+            return False
+        state_at(tm, min((due - train.time) / h, 1.0), n, tm.between)
+        observe_train(tm, due, tm.between, out.samples[train.rows])
+        train.rows += 1
+        train.next_sample += 1
+        due = sample_due(tm)
+    due = look_due(tm)
+    while due <= time:
+        if train.looks >= out.looks.shape[0]:
+            return False
+        state_at(tm, min((due - train.time) / h, 1.0), n, tm.between)
+        observe_train(tm, due, tm.between, out.looks[train.looks])
+        train.looks += 1
+        train.next_look += 1
+        due = look_due(tm)
+    return True
+
+
+@compiled
+def _note_zero(tm: TrainModel, h: float, out: TrainOutput) -> None:
+    """Note where the speed of the judged shaft has changed its sign in a step of the length h, at its end."""
+    train, at = tm.train[0], len(tm.shafts) + tm.train[0].judged
+    w, later, rate, later_rate = tm.y[at], tm.new[at], tm.rates[0, at], tm.rates[12, at]
+    if w * later >= 0.0:
+        return
+    share = zero_of_cubic(0.0, 1.0, HALVINGS, 0.0, math.copysign(1.0, w), h, w, rate, later, later_rate)[1]
+    angles = shaft_angle(tm, train.judged, tm.y), shaft_angle(tm, train.judged, tm.new)
+    out.zeros[train.zeros, 0] = train.time + share * h
+    out.zeros[train.zeros, 1] = cubic(share, h, angles[0], w, angles[1], later)
+    train.zeros += 1
 
 
 @compiled
@@ -119,6 +177,7 @@ def finish_train_step(tm: TrainModel, time: float, root: bool, stop: float, out:
     """
     train, y, new = tm.train[0], tm.y, tm.new
     follow_shafts(tm, time - train.time)
+    _note_zero(tm, time - train.time, out)
     flying = accept_all(tm, time, new)
     train.steps += 1
     train.flight_steps += flying == len(tm.meshes)
@@ -151,13 +210,14 @@ def has_room(tm: TrainModel, out: TrainOutput) -> bool:
     """Whether a block has room for all that may happen at one time."""
     train = tm.train[0]
     enough = train.events + len(tm.meshes) * EVENTS_AT_ONCE <= out.events.shape[0]
+    enough = enough and train.zeros < out.zeros.shape[0]
     return bool(enough and train.rests + len(tm.shafts) <= out.rests.shape[0])
 
 
 @compiled
 def advance_train(tm: TrainModel, out: TrainOutput, most: int) -> None:
     """Take steps until the run is done, the block is full, or so many have been taken."""
-    train, n, y, new = tm.train[0], 2 * len(tm.shafts), tm.y, tm.new
+    train, y, new = tm.train[0], tm.y, tm.new
     for _ in range(most):
         if train.done != 0 or train.error != 0 or not has_room(tm, out):
             return
@@ -171,7 +231,7 @@ def advance_train(tm: TrainModel, out: TrainOutput, most: int) -> None:
             return
         time = stop if h == stop - train.time else train.time + h
         value, share = train_guard(tm, time, new, True), 1.0
-        root, due = value < 0.0, sample_due(tm, train.next_sample)
+        root, due = value < 0.0, min(sample_due(tm), look_due(tm))
         seen = wants_polynomial(tm)
         if (root and train.guard > 0.0) or due <= time or seen:
             make_polynomial(tm, h)
@@ -180,14 +240,8 @@ def advance_train(tm: TrainModel, out: TrainOutput, most: int) -> None:
                 if share < 1.0:
                     time = train.time + share * h
                     state_at(tm, share, y.size, new)
-            while due <= time:
-                if train.rows >= out.samples.shape[0]:
-                    return  # the step is taken again with room for its samples
-                state_at(tm, min((due - train.time) / h, 1.0), n, tm.between)
-                observe_train(tm, due, tm.between, out.samples[train.rows])
-                train.rows += 1
-                train.next_sample += 1
-                due = sample_due(tm, train.next_sample)
+            if not _sample_step(tm, time, h, out):
+                return  # the step is taken again with room for its samples
             if seen:
                 follow_forces(tm, share, h)
         if share < 1.0:

@@ -31,15 +31,22 @@ _GOLDEN: Final = 0.5 * (math.sqrt(5.0) - 1.0)
 
 
 @compiled
+def shaft_angle(tm: TrainModel, i: int, y: Floats) -> float:
+    """Angle of a shaft since the start [rad]."""
+    train, shaft = tm.train[0], tm.shafts[i]
+    turned = (train.turns + y[train.load]) / train.per_radian
+    departure = 0.0 if i == train.load else y[i] - shaft.begin
+    return float(shaft.ratio * turned + departure)
+
+
+@compiled
 def observe_train(tm: TrainModel, t: float, y: Floats, row: Floats) -> None:
     """Write one sample at a time [s], with the histories as they are; see `gearidae.records.train_results`."""
     train, n, at = tm.train[0], len(tm.shafts), 0
     motion(tm, t, y, tm.rates[15])
-    turned = (train.turns + y[train.load]) / train.per_radian
     for i in range(n):
         shaft = tm.shafts[i]
-        departure = 0.0 if i == train.load else y[i] - shaft.begin
-        row[at], row[at + 1] = y[n + i], shaft.ratio * turned + departure
+        row[at], row[at + 1] = y[n + i], shaft_angle(tm, i, y)
         row[at + 2], row[at + 3] = shaft.hub, math.atan2(shaft.load_y, shaft.load_x)
         at += SHAFT_COLUMNS
     for k in range(len(tm.meshes)):

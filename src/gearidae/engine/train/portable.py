@@ -21,7 +21,7 @@ from gearidae.engine.portable import Trail
 from gearidae.engine.setup.problem import OWN_SAFETY
 from gearidae.engine.train.events import next_train_stop, train_guard
 from gearidae.engine.train.layout import TrainModel, TrainOutput
-from gearidae.engine.train.loop import finish_train_step, has_room, sample_due
+from gearidae.engine.train.loop import finish_train_step, has_room, look_due, sample_due
 from gearidae.engine.train.motion import motion
 from gearidae.engine.train.observe import note_forces, observe_train
 from gearidae.engine.train.rest import any_held
@@ -181,10 +181,17 @@ class PortableDriver:
         tm = self._tm
         train = tm.train[0]
         assert self._trail is not None
-        while (due := sample_due(tm, int(train.next_sample))) <= self._time:
+        while (due := sample_due(tm)) <= self._time:
             if train.rows >= out.samples.shape[0]:
                 take()
             state = tm.new if due == self._time else self._trail.at(due)
             _observe(tm, due, state, out.samples[train.rows])
             train.rows += 1
             train.next_sample += 1
+        while (due := look_due(tm)) <= self._time:
+            if train.looks >= out.looks.shape[0]:
+                take()
+            state = tm.new if due == self._time else self._trail.at(due)
+            _observe(tm, due, state, out.looks[train.looks])
+            train.looks += 1
+            train.next_look += 1

@@ -15,7 +15,7 @@ from gearidae.engine.compiling import HOW_LONG, TRAIN, compiling
 from gearidae.engine.integrate.driver import ending_of_flag
 from gearidae.engine.train.build import TrainProblem, make_train
 from gearidae.engine.train.layout import OF_MESH, OF_SHAFT, TrainModel, TrainOutput
-from gearidae.engine.train.loop import advance_train
+from gearidae.engine.train.loop import LOOKS, advance_train
 from gearidae.engine.train.motion import torque_slopes
 from gearidae.engine.train.observe import (
     COMMON_COLUMNS,
@@ -36,6 +36,7 @@ from gearidae.records.train_results import (
     SHAFT_SAMPLES,
     WORKS_OF_MESHES,
     WORKS_OF_SHAFTS,
+    Track,
     TrainSolution,
 )
 from gearidae.scene.scene import TrainScene
@@ -54,6 +55,8 @@ class _Kept:
     def __init__(self, columns: int) -> None:
         self.out = TrainOutput(
             np.empty((ROWS, columns)),
+            np.empty((ROWS, columns)),
+            np.empty((EVENTS, 2)),
             np.empty((EVENTS, TRAIN_EVENT_NUMBERS)),
             np.empty((EVENTS, REST_NUMBERS)),
         )
@@ -63,14 +66,16 @@ class _Kept:
     def take(self, problem: TrainProblem) -> None:
         """Take a block over."""
         train = problem.model.train[0]
-        counts = int(train.rows), int(train.events), int(train.rests)
+        names = ("rows", "looks", "zeros", "events", "rests")
+        counts = [int(train[name]) for name in names]
         for kept, table, count in zip(self._tables, self.out, counts, strict=True):
             kept.append(table[:count].copy())
-        self.events += counts[1]
-        train.rows = train.events = train.rests = 0
+        self.events += int(train.events)
+        for name in names:
+            train[name] = 0
 
     def tables(self) -> list[NDArray[np.float64]]:
-        """Samples, events and rests."""
+        """Samples, looks, zeros, events and rests."""
         return [np.concatenate(kept) for kept in self._tables]
 
 
@@ -178,17 +183,8 @@ def _solution(
     """Put a solution together."""
     scene, tm = problem.scene, problem.model
     laid = scene.train
-    table, events, rests = kept.tables()
-    n, meshes, count = len(tm.shafts), len(tm.meshes), len(table)
-    of_shafts = table[:, : SHAFT_COLUMNS * n].reshape(count, n, SHAFT_COLUMNS)
-    of_meshes = table[:, SHAFT_COLUMNS * n : SHAFT_COLUMNS * n + MESH_COLUMNS * meshes]
-    of_meshes = of_meshes.reshape(count, meshes, MESH_COLUMNS)
-    common = table[:, -COMMON_COLUMNS:]
-    samples = {
-        **{name: np.ascontiguousarray(of_shafts[:, :, i].T) for i, name in enumerate(SHAFT_SAMPLES)},
-        **{name: np.ascontiguousarray(of_meshes[:, :, i].T) for i, name in enumerate(MESH_SAMPLES)},
-        **{name: np.ascontiguousarray(common[:, i]) for i, name in enumerate(COMMON_SAMPLES)},
-    }
+    samples, looks, zeros, events, rests = kept.tables()
+    start, end = float(tm.train[0].start), float(tm.train[0].end)
     places = {name: getattr(EVENT, name) for name in ("time", "kind", "pair", "flank", "gap_rate", "force")}
     places |= {"mesh": MESH_AT, "shaft": SHAFT_AT}
     whole = ("kind", "pair", "flank", "mesh", "shaft")
@@ -196,8 +192,9 @@ def _solution(
     return TrainSolution(
         shafts=tuple(shaft.name for shaft in laid.shafts),
         meshes=tuple(mesh.name for mesh in laid.meshes),
-        time=sample_times(0.0, scene.run.duration, scene.run.sample_count)[:count],
-        samples=samples,
+        time=sample_times(0.0, scene.run.duration, scene.run.sample_count)[: len(samples)],
+        samples=_columns(problem, samples),
+        track=Track(sample_times(start, end, LOOKS)[: len(looks)], _columns(problem, looks), *zeros.T.copy()),
         events={
             name: events[:, place].astype(np.int64) if name in whole else events[:, place].copy()
             for name, place in places.items()
@@ -209,9 +206,23 @@ def _solution(
         status=status,
         message=message,
         reached=float(tm.train[0].time),
-        start=float(tm.train[0].start),
+        start=start,
         statistics=statistics,
     )
+
+
+def _columns(problem: TrainProblem, table: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+    """Columns of samples by their names."""
+    n, meshes, count = len(problem.model.shafts), len(problem.model.meshes), len(table)
+    of_shafts = table[:, : SHAFT_COLUMNS * n].reshape(count, n, SHAFT_COLUMNS)
+    of_meshes = table[:, SHAFT_COLUMNS * n : SHAFT_COLUMNS * n + MESH_COLUMNS * meshes]
+    of_meshes = of_meshes.reshape(count, meshes, MESH_COLUMNS)
+    common = table[:, -COMMON_COLUMNS:]
+    return {
+        **{name: np.ascontiguousarray(of_shafts[:, :, i].T) for i, name in enumerate(SHAFT_SAMPLES)},
+        **{name: np.ascontiguousarray(of_meshes[:, :, i].T) for i, name in enumerate(MESH_SAMPLES)},
+        **{name: np.ascontiguousarray(common[:, i]) for i, name in enumerate(COMMON_SAMPLES)},
+    }
 
 
 def _rests(tm: TrainModel, ended: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:

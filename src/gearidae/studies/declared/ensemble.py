@@ -114,7 +114,7 @@ def ensemble(
     >>> ds = gd.studies.ensemble(scene, vary, 128, of="min_gear_speed")  # doctest: +SKIP
     >>> ds.total_order.sel(parameter="drive.torque")  # doctest: +SKIP
     """
-    base, execution = prepared(scene, options, samples="off")
+    base, execution = prepared(scene, options, samples="off", trains=True)
     check_design(size, design, seed, indices=of is not None)
     _check_figure(base, of)
 

@@ -16,7 +16,7 @@ from gearidae.errors import SceneError
 from gearidae.runs.execution import RunOptions, prepared
 from gearidae.runs.sweep_plan import plan_sweep
 from gearidae.runs.sweeping import run_study
-from gearidae.scene import require_gears
+from gearidae.scene import require_meshes
 from gearidae.scene.pairs import sweep_values
 from gearidae.studies.announcement import grid_words
 from gearidae.studies.members import STICKS
@@ -61,7 +61,7 @@ def operating_map(
     Parameters
     ----------
     scene : Scene
-        With gears.
+        With gears, a pair or a train, whose judged shaft and its mesh are looked at.
     over : mapping of str to iterable
         Two keys, such as ``drive.torque`` and ``coating.sam_fraction``, and their values, as for `gearidae.sweep`.
     **options
@@ -91,8 +91,8 @@ def operating_map(
     >>> chart = gd.studies.operating_map(scene, over)  # doctest: +SKIP
     >>> ax = gd.plot.outcome_map(chart)  # doctest: +SKIP
     """
-    base, execution = prepared(scene, options, samples="off")
-    require_gears(base)
+    base, execution = prepared(scene, options, samples="off", trains=True)
+    require_meshes(base)
     if not isinstance(over, Mapping) or len(over) != 2:
         allowed = 'must be two keys and their values, {"drive.torque": [...], "coating.sam_fraction": [...]}'
         raise SceneError(

@@ -20,7 +20,7 @@ from gearidae.errors import SceneError, SolverError
 from gearidae.runs.execution import RunOptions, SideBySide, prepared
 from gearidae.runs.run_cache import RunCache
 from gearidae.runs.sweep_plan import values_of
-from gearidae.scene import require_gears
+from gearidae.scene import is_long_train, require_gears, require_meshes
 from gearidae.scene.keys import find_key
 from gearidae.scene.pairs import sweep_values
 from gearidae.scene.quantity import number, whole
@@ -32,7 +32,7 @@ from gearidae.studies.threshold_run import ThresholdRun, run_until, value_of
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from gearidae.scene import GearScene, Scene
+    from gearidae.scene import Scene
 
 log = logging.getLogger(__name__)
 
@@ -60,8 +60,9 @@ def sticking_threshold(
     Parameters
     ----------
     scene : Scene
-        With gears. Torques that follow a schedule are run for ``run.duration``, in which a gear must stick or pass all
-        exits; constant ones for as long as it takes.
+        With gears, a pair or a train, whose judged shaft counts with the mesh that drives it. Torques that follow a
+        schedule are run for ``run.duration``, in which a gear must stick or pass all exits; constant ones for as long
+        as it takes.
     over : str, optional
         Key of a number.
     between : tuple of two values, optional
@@ -114,9 +115,9 @@ def sticking_threshold(
     >>> found = gd.studies.sticking_threshold(scene, between=(0.4, 0.7), exits=5)  # doctest: +SKIP
     >>> float(found.limit.sel(exits=5))  # doctest: +SKIP
     """
-    scene = require_gears(scene)
+    scene = require_meshes(scene)
     ends = _ends(scene, over, between)
-    base, execution = prepared(scene, options, samples="off")
+    base, execution = prepared(scene, options, samples="off", trains=True)
     width = abs(ends[1] - ends[0]) * _WIDTH if width is None else number("width", width)
     _check(exits, width)
     if not is_scheduled(base.to_dict()):  # a schedule has a time of its own
@@ -157,7 +158,7 @@ def sticking_threshold(
 class _Gear:
     """One gear of a design: its scene, its runs so far, and why it has no limit."""
 
-    scene: GearScene
+    scene: Scene
     runs: list[ThresholdRun] = field(default_factory=list)
     message: str = ""
 
@@ -356,11 +357,16 @@ def _check(exits: int, width: float) -> None:
         raise SceneError("width", width, "must be positive")
 
 
-def _window(scene: GearScene, exits: int) -> float:
+def _window(scene: Scene, exits: int) -> float:
     """Simulated time that a run gets [s]."""
     from gearidae.runs.estimates import waiting_speed
 
-    return _PATIENCE * (exits + 1) * 2.0 * math.pi / (scene.gears.gear_teeth * waiting_speed(scene))
+    if is_long_train(scene):
+        from gearidae.runs.train_statics import waiting_time
+
+        return _PATIENCE * (exits + 1) * waiting_time(scene)
+    gears = require_gears(scene)
+    return _PATIENCE * (exits + 1) * 2.0 * math.pi / (gears.gears.gear_teeth * waiting_speed(gears))
 
 
 def _written(
