@@ -5,23 +5,25 @@ from __future__ import annotations
 import logging
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Unpack
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, TypeAlias, Unpack
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from gearidae.archive.output_selection import TOTALS
 from gearidae.archive.provenance import provenance
 from gearidae.archive.variables import COVERAGE_KEY
 from gearidae.errors import SceneError
 from gearidae.runs.execution import Execution, RunOptions, prepared
 from gearidae.runs.release import holding_forces
 from gearidae.runs.run_cache import RunCache
-from gearidae.runs.running import FAILS, SomeScene, failure_of, solve_to_end, unfinished, unsolved
-from gearidae.scene import is_long_train, require_gears
+from gearidae.runs.running import FAILS, SomeScene, failure_of, solve_any_to_end, unfinished
+from gearidae.scene import GearScene, TrainScene, is_long_train, require_gears
 from gearidae.scene.carried import numbers_of
 from gearidae.scene.joints import ages
+from gearidae.scene.judged import judged_shaft
 from gearidae.scene.quantity import number, switch, whole
 from gearidae.studies._starting_seeds import QUANTILES, quantiles, starting_torques
 from gearidae.studies.bracket import STRIDE, bracket, crossing, next_value
@@ -36,15 +38,23 @@ from gearidae.studies.declared.starting_torque import (
 from gearidae.studies.requirements import require_constant
 from gearidae.studies.specimens import gears_of, gears_text, seed_of, seeds_that_draw
 from gearidae.studies.starting_parts import PARTS, Starting, parts_of
-from gearidae.studies.starting_ramp import nothing_followed, pitch_of
-from gearidae.studies.train_starting import part_names, require_static, static_start, train_parts
+from gearidae.studies.starting_ramp import Pitch, nothing_followed, pitch_of
+from gearidae.studies.train_starting import (
+    part_names,
+    pitch_of_train,
+    require_static,
+    static_start,
+    train_parts,
+)
 
 if TYPE_CHECKING:
-    from gearidae.records import Solution
-    from gearidae.scene import GearScene, Scene, TrainScene
+    from gearidae.arrays import Floats
+    from gearidae.records.train_results import AnySolution
+    from gearidae.scene import Scene
     from gearidae.studies.study import Study
 
 log = logging.getLogger(__name__)
+AnyGears: TypeAlias = GearScene | TrainScene
 
 _FRACTIONS = np.round(np.linspace(1.0, 0.4, 13), 4)
 _ALIKE = {"mesh.pitch_error_rms": 0.0}
@@ -85,7 +95,7 @@ def static_starting_torque(scene: Scene, *, impacts: int = 3, lowest: float | No
     """
     if is_long_train(scene):
         return static_start(_require_train(scene, impacts), impacts, _lowest(scene, lowest))[0]
-    scene = _require(scene, impacts)
+    scene = _require_pair(scene, impacts)
     lowest, whole, geometry = _lowest(scene, lowest), Starting(scene), scene.geometry
     dry, lever = whole.torque(), geometry.base_radius_gear * whole.ratio
     carried = dry - whole.joint_torques[0]  # by the teeth
@@ -141,15 +151,14 @@ def starting_torque(
     Returns
     -------
     Dataset, dims (sam_fraction)
-        Of a train with several meshes ``static_torque`` alone, with its ``parts``: dry resistance, ``adhesion of MESH``
-        for each mesh, ``hub of SHAFT`` for each shaft, in N m on the shaft of the drive. Otherwise
-
         ``static_torque``: without inertia, see `static_starting_torque`. ``simulated_torque``: a run from rest turns
         the gear by `impacts` pitches at this torque and not at ``simulated_stuck``, which is smaller by `tolerance` or
         less. Both are what dry resistance and joints take where adhesion does not hold even at the lowest torque, and
         NaN without `simulated`. ``parts`` divides the static torque along ``part``: dry resistance, adhesion of teeth,
-        friction of flanks, hubs, pin, axial loads. All in N m on the pinion. The scene's own constant torque is the
-        attribute ``drive_torque``; ``message`` names the run that failed. With `rest_time` the same, dims (rest_time).
+        friction of flanks, hubs, pin, axial loads; of a train dry resistance, ``adhesion of MESH`` for each mesh, ``hub
+        of SHAFT`` for each shaft. All in N m on the pinion, of a train on the shaft of the drive; a run has turned a
+        train when each mesh has come so many pitches. The scene's own constant torque is the attribute
+        ``drive_torque``; ``message`` names the run that failed. With `rest_time` the same, dims (rest_time).
 
         Of smooth contacts with `seeds`, dims (sam_fraction, seed): ``starting_torque``, the simulated one of each gear
         (NaN if none starts it), and ``stuck_torque``, at which it sticks. Along ``sam_fraction`` the
@@ -180,40 +189,44 @@ def starting_torque(
     The two differ: a gear that comes along has momentum, which helps it over the first exits, and its contact has been
     pressed by the first touch harder than by the torque, which makes the next ones harder.
     """
-    if is_long_train(scene):
-        return _torques_of_train(
-            _require_train(scene, impacts), sam_fraction, impacts, lowest, (seeds, rest_time), options
-        )
     scene = _require(scene, impacts)
     tolerance, simulated = number("tolerance", tolerance), switch("simulated", simulated)
     if not 0.001 <= tolerance <= 1.0:
         raise SceneError("tolerance", tolerance, "must lie in 0.001..1")
-    base, execution = prepared(scene, options)
+    base, execution = prepared(scene, options, trains=True)
+    if isinstance(base, TrainScene):
+        _refuse_of_train(seeds=seeds, rest_time=rest_time)
     rests = None if rest_time is None else _rests(base, rest_time, sam_fraction)
     if rests is not None:
         points, scenes = rests, [base.replace({"initial.rest_time": time}) for time in rests]
-    elif sam_fraction is None and base.contact.is_discrete:
+    elif sam_fraction is None and (base.contact.is_discrete or is_long_train(base)):
         points, scenes = _coatings(base, "own")
     else:
         points, scenes = _coatings(base, sam_fraction)
     if base.contact.is_discrete:
         _refuse_settings(impacts=impacts, lowest=lowest, simulated=simulated, tolerance=tolerance)
+        pairs = [require_gears(variant) for variant in scenes]
         return starting_torques(
-            base, GEARS if rests is None else GEAR_RESTS, points, scenes, seeds, execution
+            require_gears(base), GEARS if rests is None else GEAR_RESTS, points, pairs, seeds, execution
         )
     if seeds is not None:
         if rests is not None or not simulated:
             raise SceneError("seeds", seeds, "is for simulated torques over the coating: leave it out here")
+        pairs = [require_gears(variant) for variant in scenes]
         return _torques_of_gears(
-            scene, base, (points, scenes), seeds, _lowest(scene, lowest), impacts, tolerance, execution
+            scene,
+            require_gears(base),
+            (points, pairs),
+            seeds,
+            _lowest(scene, lowest),
+            impacts,
+            tolerance,
+            execution,
         )
     study, least = STUDY if rests is None else RESTS, _lowest(scene, lowest)
 
     def work(kept: RunCache | None) -> xr.Dataset:
-        static = [static_starting_torque(variant, impacts=impacts, lowest=least) for variant in scenes]
-        searches = [
-            _Search(variant, impacts, least, torque) for variant, torque in zip(scenes, static, strict=True)
-        ]
+        searches = [_searched(variant, impacts, least) for variant in scenes]
         if simulated:
             _search_all(searches, tolerance, execution, kept)
         return _dataset(scene, study, points, searches, simulated=simulated).assign_attrs(
@@ -226,52 +239,8 @@ def starting_torque(
     )
 
 
-def _torques_of_train(
-    scene: TrainScene,
-    sam_fraction: ArrayLike | None,
-    impacts: int,
-    lowest: float | None,
-    others: tuple[int | None, ArrayLike | None],
-    options: RunOptions,
-) -> xr.Dataset:
-    """Static starting torques of a train, and what takes them, over the coating that its meshes have in common."""
-    for name, value in zip(("seeds", "rest_time"), others, strict=True):
-        if value is not None:
-            raise SceneError(name, value, "must be left out of a train of several meshes")
-    points, scenes = _coatings(scene, "own" if sam_fraction is None else sam_fraction)
-    least, execution = _lowest(scene, lowest), Execution(**options, method=scene.run.method)
-
-    def work(_: RunCache | None) -> xr.Dataset:
-        starts = [static_start(variant, impacts, least) for variant in scenes]
-        torques = np.array([torque for torque, _ in starts])
-        parts = [
-            train_parts(variant, held) if math.isfinite(torque) else np.full(len(names), math.nan)
-            for variant, (torque, held) in zip(scenes, starts, strict=True)
-        ]
-        nothing = np.full(len(points), math.nan)
-        values = {
-            "static_torque": torques,
-            "simulated_torque": nothing,
-            "simulated_stuck": nothing,
-            "part": np.array(names),
-            "parts": np.array(parts),
-        }
-        attributes = {
-            **provenance(scene, "searched the starting torque of a train", swept=(COVERAGE_KEY,)),
-            "title": f"{scene.name}: starting torque",
-            "summary": "Smallest torque of the drive that takes a train through its mesh exits without inertia.",
-            "drive_torque": scene.drive.torque,
-            "drive_shaft": scene.train.shafts[scene.train.drive].name,
-            "impacts": impacts,
-        }
-        return STUDY.dataset(values, attributes).assign_coords(coordinate(STUDY, points))
-
-    names = part_names(scene)
-    return STUDY.compute(execution, scene, work, [points, impacts, least])
-
-
 def _torques_of_gears(
-    scene: GearScene,
+    scene: Scene,
     base: GearScene,
     coatings: tuple[list[float], list[GearScene]],
     seeds: int,
@@ -289,9 +258,9 @@ def _torques_of_gears(
             for variant in scenes
         ]
         searches = [
-            _Search(variant.replace(gear), impacts, lowest, torque)
+            _Search(at, impacts, lowest, torque, pitch_of(at))
             for variant, torque in zip(scenes, static, strict=True)
-            for gear in gears
+            for at in map(variant.replace, gears)
         ]
         _search_all(searches, tolerance, execution, kept)
         shape = (len(points), len(gears))
@@ -329,7 +298,7 @@ def _torques_of_gears(
     return TEETH.compute(execution, base, work, settings, origin=scene)
 
 
-def _rests(base: GearScene, rest_time: ArrayLike, sam_fraction: ArrayLike | None) -> list[float]:
+def _rests(base: Scene, rest_time: ArrayLike, sam_fraction: ArrayLike | None) -> list[float]:
     """Read times at rest, and refuse what does not go with them."""
     if sam_fraction is not None and not (isinstance(sam_fraction, str) and sam_fraction == "own"):
         raise SceneError("sam_fraction", sam_fraction, "must be left out with rest_time: one of both varies")
@@ -341,6 +310,18 @@ def _rests(base: GearScene, rest_time: ArrayLike, sam_fraction: ArrayLike | None
     except ValueError as error:
         raise SceneError("rest_time", rest_time, str(error)) from None
     return [float(time) for time in np.atleast_1d(times)]
+
+
+def _refuse_of_train(**settings: Any) -> None:
+    """Refuse settings that the starting torque of a train does not have."""
+    reasons = {
+        "seeds": "nothing of its teeth is drawn by them",
+        "rest_time": "friction of its joints does not age",
+    }
+    for name, value in settings.items():
+        if value is not None:
+            allowed = f"must be left out of a train of several meshes: {reasons[name]}"
+            raise SceneError(name, value, allowed)
 
 
 def _refuse_settings(**settings: Any) -> None:
@@ -371,7 +352,7 @@ def _coatings(base: SomeScene, sam_fraction: ArrayLike | None) -> tuple[list[flo
 
 
 def _dataset(
-    scene: GearScene, study: Study, points: Sequence[float], searches: Sequence[_Search], *, simulated: bool
+    scene: AnyGears, study: Study, points: Sequence[float], searches: Sequence[_Search], *, simulated: bool
 ) -> xr.Dataset:
     results = [search.result if simulated else (math.nan, math.nan) for search in searches]
     turns, sticks = map(np.array, zip(*results, strict=True))
@@ -379,8 +360,8 @@ def _dataset(
         "static_torque": np.array([search.static for search in searches]),
         "simulated_torque": turns,
         "simulated_stuck": sticks,
-        "part": np.array(PARTS),
-        "parts": np.array([parts_of(search.scene, search.static) for search in searches]),
+        "part": np.array(part_names(scene) if is_long_train(scene) else PARTS),
+        "parts": np.array([search.parts for search in searches]),
         "message": np.array([search.failure for search in searches]),
     }
     key, against = ("initial.rest_time", "time at rest") if study is RESTS else (COVERAGE_KEY, "SAM fraction")
@@ -390,6 +371,11 @@ def _dataset(
         "summary": f"Smallest drive torque that keeps the gear turning against adhesion, against {against}.",
         "drive_torque": scene.drive.torque,
     }
+    if is_long_train(scene):
+        attributes["summary"] = (
+            f"Smallest drive torque that takes a train through its mesh exits, against {against}."
+        )
+        attributes["drive_shaft"] = scene.train.shafts[scene.train.drive].name
     return study.dataset(values, attributes).assign_coords(coordinate(study, points))
 
 
@@ -397,18 +383,20 @@ def _dataset(
 class _Search:
     """Bracket of one fraction's torque on its way to be narrow; torques are beyond the dry resistance."""
 
-    scene: GearScene
+    scene: AnyGears
     impacts: int
     lowest: float
     static: float
+    pitch: Pitch
+    parts: Floats = field(default_factory=lambda: np.empty(0))
     failure: str = ""
     turned: dict[float, bool] = field(default_factory=dict)
 
     def next_torque(self, tolerance: float) -> float | None:
         """Torque to try next; None when the bracket is narrow, there is nothing in reach, or a run has failed."""
-        if self.failure:
+        if self.failure or math.isinf(self.pitch.dry):
             return None
-        guess = self.static - _dry(self.scene)
+        guess = self.static - self.pitch.dry
         first = guess if self.lowest < guess < math.inf else self.lowest
         return next_value(self.turned, first, self.lowest, tolerance)
 
@@ -420,11 +408,23 @@ class _Search:
         """
         if self.failure:
             return math.nan, math.nan
-        dry = _dry(self.scene)
+        dry = self.pitch.dry
         if all(self.turned.values()):
             return dry, dry
         sticks, turns = bracket(self.turned)
         return (dry + turns, dry + sticks) if turns > 0.0 else (math.inf, dry + max(self.turned))
+
+
+def _searched(scene: AnyGears, impacts: int, lowest: float) -> _Search:
+    """Begin the search of a scene's torque at the static one."""
+    if is_long_train(scene):
+        static, held = static_start(scene, impacts, lowest)
+        names = part_names(scene)
+        parts = train_parts(scene, held) if math.isfinite(static) else np.full(len(names), math.nan)
+        return _Search(scene, impacts, lowest, static, pitch_of_train(scene), parts)
+    gears = require_gears(scene)
+    static = static_starting_torque(gears, impacts=impacts, lowest=lowest)
+    return _Search(gears, impacts, lowest, static, pitch_of(gears), parts_of(gears, static))
 
 
 def _search_all(
@@ -452,22 +452,21 @@ def _search_all(
 
 def _way(search: _Search) -> float:
     """Angle through which the gear is to come [rad]."""
-    return search.impacts * 2.0 * math.pi / search.scene.gears.gear_teeth
+    return search.impacts * search.pitch.angle
 
 
-def _from_rest(search: _Search, torque: float) -> GearScene:
+def _from_rest(search: _Search, torque: float) -> AnyGears:
     """Return the scene of a run from rest at a torque beyond the dry resistance, with the time that it gets."""
-    scene, way, pitch = search.scene, _way(search), pitch_of(search.scene)
-    load = scene.load
+    scene, way, pitch = search.scene, _way(search), search.pitch
     duration = math.sqrt(2.0 * way * pitch.inertia / (torque * pitch.ratio))
-    if load.drag > 0.0:
-        duration += way / math.sqrt(torque * pitch.ratio / load.drag)
-    duration += way * load.viscous / (torque * pitch.ratio)
+    if pitch.drag > 0.0:
+        duration += way / math.sqrt(torque * pitch.ratio / pitch.drag)
+    duration += way * pitch.viscous / (torque * pitch.ratio)
     others = ("schedule", "speed", "speed_gain")
     drive = {key: value for key, value in scene.to_dict()["drive"].items() if key not in others}
     return scene.replace(
         {
-            "drive": {**drive, "torque": _dry(scene) + torque},
+            "drive": {**drive, "torque": pitch.dry + torque},
             "initial.gear_speed": 0.0,
             "run.duration": _PATIENCE * duration,
             "run.samples": 101,
@@ -475,25 +474,22 @@ def _from_rest(search: _Search, torque: float) -> GearScene:
     )
 
 
-def _run_from_rest(scene: GearScene, way: float, backend: str) -> tuple[Solution, str]:
+def _run_from_rest(scene: AnyGears, way: float, backend: str) -> tuple[AnySolution, str]:
     """Run a scene; ``turns`` if the gear comes that far, else ``sticks``; `FAILS` and a message if it fails."""
-    solution = solve_to_end(scene, backend)
+    solution = solve_any_to_end(scene, backend)
     if solution.status != "finished":
         coverage = 100.0 * float(np.mean(scene.coating.fractions))
         rest = f" after {scene.initial.rest_time:g} s of rest" if scene.initial.rest_time > 0.0 else ""
         words = f"the run of SAM {coverage:.4g} %{rest} at {scene.drive.torque:g} N m"
         return solution, f"{FAILS}{unfinished(solution, words)}"
-    angle, none = solution.samples["gear_angle"], unsolved("", "")
-    word = "turns" if angle.max() - angle[0] >= way else "sticks"
-    return replace(solution, time=none.time, samples=none.samples, events=none.events), word
+    if isinstance(scene, TrainScene):
+        angle = solution.samples["shaft_angle"][judged_shaft(scene)]
+    else:
+        angle = solution.samples["gear_angle"]
+    return TOTALS.thinned(solution), "turns" if angle.max() - angle[0] >= way else "sticks"
 
 
-def _dry(scene: GearScene) -> float:
-    """Drive torque that dry resistance and joints take [N m], without friction of the flanks."""
-    return pitch_of(scene).dry
-
-
-def _lowest(scene: GearScene | TrainScene, asked: float | None) -> float:
+def _lowest(scene: AnyGears, asked: float | None) -> float:
     lowest = _LOWEST * abs(scene.drive.torque) if asked is None else number("lowest", asked, "N m")
     if not 0.0 < lowest < math.inf:
         allowed = (
@@ -504,7 +500,11 @@ def _lowest(scene: GearScene | TrainScene, asked: float | None) -> float:
     return lowest
 
 
-def _require(scene: Scene, impacts: int) -> GearScene:
+def _require(scene: Scene, impacts: int) -> AnyGears:
+    return _require_train(scene, impacts) if is_long_train(scene) else _require_pair(scene, impacts)
+
+
+def _require_pair(scene: Scene, impacts: int) -> GearScene:
     gears = require_gears(scene)
     _require_one_load(gears, impacts)
     return gears

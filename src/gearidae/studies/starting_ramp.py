@@ -73,12 +73,16 @@ class Pitch(NamedTuple):
         R2 over R1.
     dry : float
         Torque on the pinion that dry resistance and joints take without friction of the flanks [N m].
+    viscous, drag : float
+        Drags of the load [N m s, N m s^2].
     """
 
     angle: float
     inertia: float
     ratio: float
     dry: float
+    viscous: float
+    drag: float
 
     def time(self, torque: float) -> float:
         """Time of one pitch from rest, without adhesion, at a torque beyond the dry resistance [s]."""
@@ -90,7 +94,8 @@ def pitch_of(scene: GearScene) -> Pitch:
     gears, geometry = scene.gears, scene.geometry
     ratio = geometry.base_radius_gear / geometry.base_radius_pinion
     inertia = gears.gear_inertia + gears.pinion_inertia * ratio**2
-    return Pitch(2.0 * math.pi / gears.gear_teeth, inertia, ratio, Starting(scene, WITHOUT_FLANKS).torque())
+    dry = Starting(scene, WITHOUT_FLANKS).torque()
+    return Pitch(2.0 * math.pi / gears.gear_teeth, inertia, ratio, dry, scene.load.viscous, scene.load.drag)
 
 
 def least_damping(scene: GearScene) -> float:

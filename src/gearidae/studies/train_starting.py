@@ -1,4 +1,7 @@
-"""Starting torque of a train without inertia: what dry loads, adhesion in each mesh and each hub take of it."""
+"""Starting torque of a train without inertia: what dry loads, adhesion in each mesh and each hub take of it.
+
+What a simulated start needs to know of a train besides is its `pitch_of_train`.
+"""
 
 from __future__ import annotations
 
@@ -11,8 +14,10 @@ import numpy as np
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.runs.train_release import TrainRelease
-from gearidae.runs.train_statics import starting_torque
+from gearidae.runs.train_statics import ratios, resistances, starting_torque
+from gearidae.scene.judged import judged_shaft
 from gearidae.studies.bracket import crossing
+from gearidae.studies.starting_ramp import Pitch
 
 if TYPE_CHECKING:
     from gearidae.scene import TrainScene
@@ -64,6 +69,24 @@ def static_start(scene: TrainScene, impacts: int, lowest: float) -> tuple[float,
         return dry + more, nothing
     held = release.resistance(dry + more).held
     return starting_torque(scene, held)[0], held
+
+
+def pitch_of_train(scene: TrainScene) -> Pitch:
+    """Return the pitch of a train, at its judged shaft, of the mesh that turns slowest beside it."""
+    train = scene.train
+    ratio = ratios(train)
+    over = ratio / ratio[judged_shaft(scene)]
+    angle = max(2.0 * math.pi / (mesh.geometry.gear_teeth * over[mesh.b]) for mesh in train.meshes)
+    inertia = float(np.array([shaft.inertia for shaft in train.shafts]) @ over**2)
+    _, viscous, drag = resistances(scene)
+    return Pitch(
+        angle=angle,
+        inertia=inertia,
+        ratio=float(over[train.drive]),
+        dry=starting_torque(scene)[0],
+        viscous=float(viscous @ over**2),
+        drag=float(drag @ over**3),
+    )
 
 
 def part_names(scene: TrainScene) -> list[str]:

@@ -73,17 +73,19 @@ def _announced(
 
 def _train_sentence(ds: xr.Dataset) -> str:
     """Say what starts a train, and what takes most of it."""
-    shaft, torques = ds.attrs["drive_shaft"], ds["static_torque"].values
+    shaft, torques, static = ds.attrs["drive_shaft"], _simulated(ds).values, ds["static_torque"].values
+    slowly = "" if np.isfinite(ds["simulated_torque"]).any() else ", without inertia"
     low, high = (with_prefix(float(f(torques)), "N m", 4) for f in (np.min, np.max))
     if ds.sizes["sam_fraction"] > 1:
-        return f"The train starts at {low} to {high} on {shaft}, by its coating, without inertia."
-    if math.isinf(torques[0]):
+        return f"The train starts at {low} to {high} on {shaft}, by its coating{slowly}."
+    if math.isinf(static[0]):
         return f"No torque on {shaft} starts the train: adhesion or a hub locks it."
     parts = ds["parts"].isel(sam_fraction=0)
     most = parts.isel(part=int(np.argmax(parts.values)))
-    share = 100.0 * float(most) / float(torques[0]) if torques[0] > 0.0 else 0.0
+    share = 100.0 * float(most) / float(static[0]) if static[0] > 0.0 else 0.0
     taken = f"; {most['part'].item()} takes {share:.3g} % of it" if share > 0.0 else ""
-    return f"The train starts at {low} on {shaft}, without inertia{taken}."
+    also = "" if slowly else f", at {with_prefix(float(static[0]), 'N m', 4)} without inertia"
+    return f"The train starts at {low} on {shaft}{slowly}{also}{taken}."
 
 
 def _sentence(ds: xr.Dataset) -> str:
@@ -136,20 +138,15 @@ def _points(ds: xr.Dataset) -> list[tuple[str, xr.Dataset]]:
 
 def _rows(ds: xr.Dataset) -> Rows:
     """Torques at each coverage or after each rest."""
-    train = "drive_shaft" in ds.attrs
-    if train:
-        yield f"Starting torque on {ds.attrs['drive_shaft']}", "", ""
-    else:
-        yield "Starting torque on the pinion", "simulated", "sticks at, and without inertia"
+    shaft = ds.attrs.get("drive_shaft", "the pinion")
+    yield f"Starting torque on {shaft}", "simulated", "sticks at, and without inertia"
     for name, point in _points(ds):
         turns, sticks, static = (
             with_prefix(float(point[which]), "N m", 4)
             for which in ("simulated_torque", "simulated_stuck", "static_torque")
         )
         words = f"sticks at {sticks}, static {static}"
-        if train:
-            turns, words = static, "without inertia"
-        elif np.isnan(point["simulated_torque"]):
+        if np.isnan(point["simulated_torque"]):
             turns, words = "-", f"no simulated torque, static {static}"
             message = str(point["message"].values) if "message" in point else ""
             words += f": {message}" if message else ""
