@@ -247,20 +247,20 @@ def _check_layout(ds: xr.Dataset, path: str | os.PathLike[str]) -> None:
 
 def _expected(ds: xr.Dataset, scene: dict[str, Any]) -> tuple[str, ...]:
     """Variables that an archive of any version has at least."""
-    if is_train(ds):
-        rows = tuple(name for kind in kinds_in(ds) for name in needed(kind))
-        return ("time", *COORDINATES, *TRAIN_SAMPLES, *SHAFT_TOTALS, *MESH_TOTALS, *rows)
     later = {column.name for column in (*GEAR_SAMPLES, *ROLLER_SAMPLES) if column.since}
     sampled = tuple(name for name in sampled_columns(roller="roller" in scene) if name not in later)
     rows = tuple(name for kind in kinds_in(ds) for name in needed(kind))  # a user may drop them
+    always: tuple[str, ...] = ()
+    if is_train(ds):
+        sampled, rows, always = tuple(TRAIN_SAMPLES), (*SHAFT_TOTALS, *MESH_TOTALS, *rows), tuple(COORDINATES)
     if "keep" not in ds.attrs:
-        return ("time", *sampled, *rows)
+        return (*always, "time", *sampled, *rows)
     try:
         keep = kept_in(ds.attrs, Scene.from_dict(scene))
     except SceneError as error:
         raise SceneError("archive", ds.encoding.get("source", ""), f"is damaged: {error}") from None
     some = tuple(name for name in sampled if keep.holds(name))
-    return (*(("time",) if some else ()), *some, *filter(keep.holds, rows), "status", *_JUDGED)
+    return (*always, *(("time",) if some else ()), *some, *filter(keep.holds, rows), "status", *_JUDGED)
 
 
 class CheckedStore(xr.backends.NetCDF4DataStore):

@@ -18,7 +18,6 @@ from gearidae.cli.output import is_quiet, print_error, print_line
 from gearidae.cli.tables import label_text, show_outcomes, show_summary
 from gearidae.errors import SceneError, SolverError
 from gearidae.runs.executors import check_jobs, dask_executor
-from gearidae.scene import is_long_train
 from gearidae.scene.pairs import sweep_values
 from gearidae.studies.announcement import grid_words
 
@@ -144,8 +143,7 @@ def sweep_case(
     check_dask(dask, jobs)
     workers = check_jobs(jobs)
     scene = read_scene(case, settings)
-    silent = as_json or is_long_train(scene)  # whose run time is not estimated
-    words = "" if silent else grid_words(scene, values, workers if dask is None else None, zipped=zipped)
+    words = "" if as_json else grid_words(scene, values, workers if dask is None else None, zipped=zipped)
     announce("Sweep", scene, words, target, resume=resume, overwrite=overwrite)
     with dask_executor(dask) as executor:
         ds = gd.sweep(

@@ -22,7 +22,7 @@ from gearidae.laws.shafts import slowing
 from gearidae.mesh.pair_contact import PairContact, asperity_stiffness
 from gearidae.progress import in_words
 from gearidae.runs.estimates import Rest, balanced_speed, mean_drive_torque, rest_of
-from gearidae.scene import GearScene
+from gearidae.scene import GearScene, is_long_train
 from gearidae.scene.combinations import may_deflect
 from gearidae.scene.friction import has_flank_friction
 from gearidae.scene.joints import has_joint_friction
@@ -135,7 +135,10 @@ def time_in_words(scenes: Sequence[Scene], runs: int, workers: int | None) -> st
     Returns
     -------
     str
+        Empty of trains of several meshes, whose run time is not estimated.
     """
+    if any(map(is_long_train, scenes)):
+        return ""
     tried, at_a_time = scenes[:: -(-len(scenes) // _TRIED)], min(workers or 1, runs)
     seconds = runs / at_a_time * sum(run_time(scene).seconds for scene in tried) / len(tried)
     if seconds < 1.0:

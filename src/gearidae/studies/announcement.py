@@ -76,7 +76,8 @@ def _words(over: str, tried: Sequence[Scene], runs: int, workers: int | None) ->
     from gearidae.runs.run_time import time_in_words
 
     many = f"{runs} run{'s' if runs > 1 else ''}"
-    return f"{many}, {over}; {time_in_words(tried, runs, workers)}"
+    time = time_in_words(tried, runs, workers)
+    return f"{many}, {over}; {time}" if time else f"{many}, {over}"
 
 
 def _range(values: Sequence[Any]) -> str:

@@ -185,6 +185,6 @@ def names_of(distributions: Sequence[Distribution]) -> dict[str, str]:
 
 
 def count_rows(words: xr.DataArray) -> Rows:
-    """Count the members of which words are true, the most frequent first."""
+    """Count the members of which words are true, the most frequent first; `words` are those of some or all of them."""
     for word, count in Counter(words.values.tolist()).most_common():
         yield str(word), str(count), f"{100.0 * count / words.size:.3g} % of the members"

@@ -16,11 +16,14 @@ import xarray as xr
 
 from gearidae.archive.output_selection import read_keep
 from gearidae.archive.specimen import SEED_KEYS, has_seeds
-from gearidae.archive.variables import extreme_names
+from gearidae.archive.train import judged_view
+from gearidae.archive.train.variables import MESH_TOTALS, OF_JUDGED
+from gearidae.archive.variables import EXTREMES, extreme_names
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.runs.execution import RunOptions, prepared
 from gearidae.runs.sweeping import run_study
+from gearidae.scene import is_long_train
 from gearidae.scene.group import did_you_mean, shorten
 from gearidae.scene.pairs import texts as read_texts
 from gearidae.scene.prefixes import with_prefix
@@ -45,6 +48,8 @@ _FIGURES: Final = (
     "smallest_mesh_force",
     "stick_time",
 )
+OF_TRAIN: Final = (*OF_JUDGED, *(name for name in MESH_TOTALS if name in EXTREMES))
+"""Extremes of a run of a train, those of the meshes for the one that drives the judged shaft."""
 _OF_GEARS: Final = ("settled_gear_speed", *_FIGURES, "asperity_onsets")
 """Figures whose means over the seeds are given."""
 
@@ -81,7 +86,8 @@ def ensemble(
         Seed of the design; the same one draws the same members.
     of : str, optional
         Figure whose Sobol' indices are wanted: ``sticks`` (0 or 1), ``impacts``, or one of the extremes, such as
-        ``min_gear_speed`` or ``largest_mesh_force``. Seeds have no index: they are no continuous input. What the
+        ``min_gear_speed`` or ``largest_mesh_force``; of a train of the judged shaft, and of the mesh that drives it.
+        Seeds have no index: they are no continuous input. What the
         indices of the keys leave over of the variance is the scatter between the gears of one design.
     **options
         ``executor``, ``jobs``, ``backend``, ``progress``, ``archive``, ``overwrite`` and ``resume``, as for
@@ -146,7 +152,7 @@ def figure_names(scene: Scene) -> tuple[str, ...]:
     -------
     tuple of str
     """
-    return ("sticks", "impacts", *extreme_names(scene))
+    return ("sticks", "impacts", *(OF_TRAIN if is_long_train(scene) else extreme_names(scene)))
 
 
 def _check_figure(scene: Scene, of: str | None) -> None:
@@ -164,7 +170,7 @@ def _with_design(
     """Say where in the design each member stands, and what the indices are."""
     if of is None:
         return ds
-    figures = ds[of].values.astype(np.float64)
+    figures = judged_view(ds)[of].values.astype(np.float64)
     indices = indices_of(figures, len(keys), seed=seed)
     if none := int(np.isnan(figures).sum()):
         log.warning(
@@ -247,6 +253,10 @@ def _rows(ds: xr.Dataset) -> Rows:
             indices = ds.sel(parameter=key)
             yield str(key), _uncertain(indices, "total_order"), _uncertain(indices, "first_order")
     yield from count_rows(ds["verdict"])
+    if "held_by" in ds and (ds["held_by"] != "").any():
+        yield "What holds those that stand", "", "at the end of the run"
+        yield from count_rows(ds["held_by"].where(ds["held_by"] != "", drop=True))
+    ds = judged_view(ds)
     if has_seeds(ds):
         yield from _mean_rows(ds)
         return
