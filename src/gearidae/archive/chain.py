@@ -15,9 +15,10 @@ import xarray as xr
 import gearidae
 from gearidae.archive.row_variables import DIMS, kinds_in, rows_from
 from gearidae.archive.select import run_scene, single_run
+from gearidae.archive.train.variables import REST_LIST
 from gearidae.archive.variables import RUN
 from gearidae.errors import SceneError
-from gearidae.scene.differences import MAY_CHANGE, first_difference
+from gearidae.scene.differences import first_difference, may_change
 
 _CONTINUOUS = ("gear_speed", "pinion_speed", "gear_angle", "transmission_error", "height", "speed")
 """What cannot jump where one run goes on from another."""
@@ -45,7 +46,8 @@ def chained(parts: Sequence[xr.Dataset]) -> xr.Dataset:
     scenes = [run_scene(part) for part in parts]
     singles = [single_run(part) for part in parts]
     for number, scene in enumerate(scenes[1:], 1):
-        difference = first_difference(scenes[0].to_dict(), scene.to_dict(), ignored=MAY_CHANGE)
+        first = scenes[0].to_dict()
+        difference = first_difference(first, scene.to_dict(), ignored=may_change(first))
         if difference is not None:
             raise SceneError(
                 difference[0],
@@ -61,13 +63,15 @@ def chained(parts: Sequence[xr.Dataset]) -> xr.Dataset:
     variables = {
         str(name): (
             variable.dims,
-            np.concatenate([part[name].values for part in cut])
-            if variable.dims[:1] in _GROWING
+            np.concatenate([part[name].values for part in cut], axis=-1)
+            if variable.dims[-1:] in _GROWING
             else variable.values,
             variable.attrs,
         )
         for name, variable in last.variables.items()
     }
+    if REST_LIST.name in variables:
+        variables[REST_LIST.name] = ((), np.array(_rests(singles), object), REST_LIST.attributes)
     ds = xr.Dataset(
         {name: variable for name, variable in variables.items() if name not in last.coords},
         coords={name: variable for name, variable in variables.items() if name in last.coords},
@@ -87,6 +91,15 @@ def chained(parts: Sequence[xr.Dataset]) -> xr.Dataset:
         history=history_of(parts, f"joined {len(parts)} runs along time"),
         **software_of(parts),
     )
+
+
+def _rests(singles: Sequence[xr.Dataset]) -> str:
+    """Join the rests of the shafts of a train; one that goes on beyond a seam has one row, with its later end."""
+    rests = {}
+    for single in singles:
+        for shaft, begin, end in json.loads(str(single[REST_LIST.name].item())):
+            rests[shaft, begin] = end
+    return json.dumps([[shaft, begin, end] for (shaft, begin), end in rests.items()])
 
 
 def _refuse_other_samples(singles: Sequence[xr.Dataset]) -> None:

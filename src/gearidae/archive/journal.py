@@ -31,6 +31,9 @@ _PREAMBLE: Final = struct.Struct("<4sIQII")
 """Before each frame: mark, bytes of the header, bytes of the arrays, CRC-32 of both, and of what precedes it."""
 _MARK: Final = b"\x93frm"
 _TYPES: Final = {"f": "<f8", "u": "<u8"}
+RUN, TRAIN, RUNS = "run", "train", "runs"
+_OF: Final = {RUN: "a single run", TRAIN: "a single run of a train", RUNS: "a sweep or study"}
+"""What a journal may be of."""
 _CHUNK: Final = 2**20
 """Bytes read at a time."""
 
@@ -38,6 +41,23 @@ _CHUNK: Final = 2**20
 def journal_of(archive: Path) -> Path:
     """Where the journal of an archive is: ``OUT.nc.journal`` beside ``OUT.nc``."""
     return archive.with_name(f"{archive.name}.journal")
+
+
+def kind_of(path: Path) -> str:
+    """Say what a journal is of, `RUN` where it does not say it; who opens it looks at the rest.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be read.
+    """
+    for kind in (TRAIN, RUNS):
+        try:
+            Journal(path, kind).close()
+        except ValueError:
+            continue
+        return kind
+    return RUN
 
 
 def file_of(archive: Path) -> Path:
@@ -73,7 +93,7 @@ class Journal:
     ----------
     path : Path
     kind : str
-        What it is of, ``run`` or ``runs``.
+        What it is of: `RUN`, `TRAIN` or `RUNS`.
     mode : {"r", "a"}, optional
         To read, or to append too.
 
@@ -100,8 +120,8 @@ class Journal:
             if self._read(0, len(SIGNATURE)) != SIGNATURE:
                 raise ValueError("it is no journal of this version of gearidae")
             self.head = self.frame(len(SIGNATURE))
-            if self.head.header.get("kind") != kind:
-                raise ValueError(f"it is of a {'single run' if kind == 'runs' else 'sweep or study'}")
+            if (found := str(self.head.header.get("kind"))) != kind:
+                raise ValueError(f"it is of {_OF.get(found, 'something else')}")
         except BaseException:
             self.close()
             raise

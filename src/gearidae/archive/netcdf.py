@@ -24,7 +24,7 @@ from gearidae.archive.attributes import readable_scene, wrong_attribute
 from gearidae.archive.definition import CHUNK, LONGEST_WHOLE, write
 from gearidae.archive.disk import disk_errors
 from gearidae.archive.integrity import check_content, check_seal, seal, with_checksums
-from gearidae.archive.journal import SIGNATURE, file_of
+from gearidae.archive.journal import SIGNATURE, TRAIN, file_of, kind_of
 from gearidae.archive.lock import is_locked
 from gearidae.archive.netcdf_access import await_lock, check_size, uninterrupted
 from gearidae.archive.output_selection import kept_in
@@ -153,7 +153,7 @@ def open_archive(path: str | os.PathLike[str]) -> xr.Dataset:
 def _unfinished(journal: Path, path: str | os.PathLike[str], *, running: bool) -> xr.Dataset:
     """Read the journal of an archive that is not finished."""
     try:
-        return _checked(RunJournal(journal).dataset(running=running), path)
+        return _checked(_left_in(journal, running=running), path)
     except FileNotFoundError as error:
         if not as_path(path).exists():
             raise SceneError("archive", path, f"cannot be read ({error.strerror})") from error
@@ -165,6 +165,16 @@ def _unfinished(journal: Path, path: str | os.PathLike[str], *, running: bool) -
     except ValueError as error:
         allowed = f"is not finished, and {journal.name} has no run that can be read ({error})"
         raise SceneError("archive", path, allowed) from None
+
+
+def _left_in(journal: Path, *, running: bool) -> xr.Dataset:
+    """Make the dataset of what a journal holds of a single run."""
+    if kind_of(journal) != TRAIN:
+        return RunJournal(journal).dataset(running=running)
+    from gearidae.archive.train.journal import TrainJournal  # which few archives need
+
+    with TrainJournal(journal) as of_train:
+        return of_train.dataset(running=running)
 
 
 def _checked(ds: xr.Dataset, path: str | os.PathLike[str]) -> xr.Dataset:

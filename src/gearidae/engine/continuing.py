@@ -61,7 +61,7 @@ from gearidae.laws.shaft.schedule import segment_ends
 from gearidae.records import EventKind, Events, Flank
 from gearidae.records.quantity import convert
 from gearidae.scene import Scene, require_gears
-from gearidae.scene.differences import MAY_CHANGE, first_difference
+from gearidae.scene.differences import first_difference, may_change
 
 _SAME: Final = 1e-12
 """Relative difference of forces below which materials are the same: units of other torques round their last digits."""
@@ -115,23 +115,10 @@ def checkpoint_of_start(scene: Scene, start: Start) -> Floats:
     new.prepare(scene.run.rtol, scene.run.sample_count)
     new = _same_contact(old, new)
     new.prepare(scene.run.rtol, scene.run.sample_count)
-    source, m = old.model, new.model
-    units = _Units(source, m)
     y = new.start.copy()
-    units.convert_motion(old_y, y)
-    take_over(source, m)
-    convert(STATE_FIELDS, m.state, units.force, units.time)
-    changed = not _same_materials(source, m)
-    changed |= m.scene.population.flanks > 0 and start.scene.coating != scene.coating
-    if changed:  # what other materials have been exposed to says nothing of these
-        exposures_of(m)[:] = 0.0
-    else:
-        units.convert_exposures(m)
-    same = float(source.scene.time_unit) == float(m.scene.time_unit)
-    time = float(source.state.time) if same else float(m.scene.start)
-    m.state.time = time
-    _carry_contacts(old, old_y, new, y, changed=changed)
-    _begin_stretch(m)
+    carry_over(old, old_y, new, y, population=start.scene.coating != scene.coating)
+    source, m = old.model, new.model
+    time = float(m.state.time)
     _hold_or_slip(source, m, time, y)
     if m.scene.guarded != 0:
         set_shaft_sides(m, y)
@@ -144,6 +131,35 @@ def checkpoint_of_start(scene: Scene, start: Start) -> Floats:
     rebase(m, y)
     m.state.progress.restarts = 1
     return new.checkpoint(time, y)
+
+
+def carry_over(old: Problem, old_y: Floats, new: Problem, y: Floats, *, population: bool = False) -> None:
+    """Carry time, motion, histories, energies and extremes of a problem over to another, which is prepared.
+
+    Parameters
+    ----------
+    old, new : Problem
+        Of the same gears; `new` may have other torques and materials.
+    old_y, y : ndarray, shape (n,)
+        Scaled states; `y` is written.
+    population : bool
+        Whether the asperities of a population, if there is one, have another coating.
+    """
+    source, m = old.model, new.model
+    units = _Units(source, m)
+    units.convert_motion(old_y, y)
+    take_over(source, m)
+    convert(STATE_FIELDS, m.state, units.force, units.time)
+    changed = not _same_materials(source, m)
+    changed |= m.scene.population.flanks > 0 and population
+    if changed:  # what other materials have been exposed to says nothing of these
+        exposures_of(m)[:] = 0.0
+    else:
+        units.convert_exposures(m)
+    same = float(source.scene.time_unit) == float(m.scene.time_unit)
+    m.state.time = float(source.state.time) if same else float(m.scene.start)
+    _carry_contacts(old, old_y, new, y, changed=changed)
+    _begin_stretch(m)
 
 
 def _torques_differ(old: Scene, new: Scene) -> bool:
@@ -184,11 +200,16 @@ def _restored(scene: Scene, words: Floats, began: float) -> tuple[Problem, Float
 
 def refuse_other_bodies(old: Scene, new: Scene) -> None:
     """Refuse a scene that differs in what may not."""
-    difference = first_difference(old.to_dict(), new.to_dict(), ignored=MAY_CHANGE)
+    before, after = old.to_dict(), new.to_dict()
+    difference = first_difference(before, after, ignored=may_change(before))
+    for table in ("shafts", "meshes"):
+        names, others = list(before.get(table, ())), list(after.get(table, ()))
+        if difference is None and names != others:
+            difference = table, ", ".join(names), ", ".join(others)
     if difference is not None:
-        key, before, after = difference
-        value = "(missing)" if after is None else "(given)" if isinstance(after, dict) else after
-        wanted = "left out" if before is None else "given" if isinstance(before, dict) else before
+        key, mine, theirs = difference
+        value = "(missing)" if theirs is None else "(given)" if isinstance(theirs, dict) else theirs
+        wanted = "left out" if mine is None else "given" if isinstance(mine, dict) else mine
         raise SceneError(key, value, f"must be {wanted}, as in the run to go on from")
 
 

@@ -1,15 +1,19 @@
-"""Solution of a run of a train: samples over its shafts and meshes, events with their place, totals of each."""
+"""Solution of a run of a train: samples over its shafts and meshes, events with their place, totals of each.
+
+An engine hands it up block by block, in tables; what the columns are is said here, for whoever reads a block.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Final, NamedTuple, TypeAlias
+from typing import Final, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gearidae.records.events import Events
 from gearidae.records.extremes import Extremes
 from gearidae.records.results import Solution, Words
 from gearidae.records.statistics import Statistics
@@ -47,6 +51,81 @@ ENERGIES: Final = (
     "residual_bound",
 )
 """Energies of the whole train [J]; ``load_work`` is what the dry resistance and the drags of the load have taken."""
+EVENT_COLUMNS: Final = (*Events.columns, "mesh", "shaft")
+"""Columns of a table of events: those of a pair's, and behind them mesh and shaft."""
+_KEPT_OF_EVENTS: Final = ("time", "kind", "pair", "flank", "gap_rate", "force", "mesh", "shaft")
+_WHOLE: Final = ("kind", "pair", "flank", "mesh", "shaft")
+REST_COLUMNS: Final = ("shaft", "begin", "end")
+
+
+class TrainTotals(NamedTuple):
+    """What a run has added up to at a time.
+
+    Attributes
+    ----------
+    shafts, meshes : dict of str to ndarray
+        `SHAFT_TOTALS` and `MESH_TOTALS`.
+    energy : dict of str to float
+        `ENERGIES`.
+    resting : ndarray, shape (n, 3)
+        `REST_COLUMNS` of the shafts that are held then, each until then.
+    """
+
+    shafts: dict[str, NDArray[np.float64]]
+    meshes: dict[str, NDArray[np.float64]]
+    energy: dict[str, float]
+    resting: NDArray[np.float64]
+
+    @classmethod
+    def none(cls, shafts: int, meshes: int) -> TrainTotals:
+        """Totals of a run that has not begun: numbers are NaN, counts 0."""
+        counts = {"mesh_exits"}
+        of_shafts, of_meshes = (
+            {name: np.full(count, 0.0 if name in counts else np.nan) for name in names}
+            for count, names in ((shafts, SHAFT_TOTALS), (meshes, MESH_TOTALS))
+        )
+        return cls(of_shafts, of_meshes, dict.fromkeys(ENERGIES, math.nan), np.empty((0, len(REST_COLUMNS))))
+
+
+class TrainBlock(NamedTuple):
+    """What a run has left since the block before.
+
+    Attributes
+    ----------
+    time : float
+        Reached [s].
+    wall_time : float
+        In the solver until then [s].
+    tables : dict of str to ndarray, shape (n, columns)
+        ``samples`` and ``looks`` (those of the track): `SHAFT_SAMPLES` of each shaft, `MESH_SAMPLES` of each mesh, and
+        `COMMON_SAMPLES`; ``zeros``: times and angles of the track; ``events``: `EVENT_COLUMNS`; ``rests``:
+        `REST_COLUMNS` of rests that have ended.
+    checkpoint : ndarray of 8-byte words
+        From which the run goes on to the same last bit.
+    totals : TrainTotals
+    """
+
+    time: float
+    wall_time: float
+    tables: dict[str, NDArray[np.float64]]
+    checkpoint: Words
+    totals: TrainTotals
+
+
+TABLES: Final = ("samples", "looks", "zeros", "events", "rests")
+"""Tables of a block."""
+
+
+def sample_columns(shafts: int, meshes: int) -> int:
+    """Count the columns of a table of samples."""
+    return len(SHAFT_SAMPLES) * shafts + len(MESH_SAMPLES) * meshes + len(COMMON_SAMPLES)
+
+
+def columns_of(table: str, shafts: int, meshes: int) -> int:
+    """Count the columns of one of the tables of a block, or of its shafts at rest."""
+    if table in ("samples", "looks"):
+        return sample_columns(shafts, meshes)
+    return {"zeros": 2, "events": len(EVENT_COLUMNS)}.get(table, len(REST_COLUMNS))
 
 
 class Track(NamedTuple):
@@ -130,33 +209,94 @@ class TrainSolution:
     @classmethod
     def none(cls, shafts: Sequence[str], meshes: Sequence[str], status: str, message: str) -> TrainSolution:
         """Solution of a run that produced nothing: numbers are NaN, counts 0."""
-        counts, nothing = {"mesh_exits"}, np.empty(0)
-        totals = {
-            side: {name: np.full(len(parts), 0.0 if name in counts else np.nan) for name in names}
-            for side, parts, names in (("shafts", shafts, SHAFT_TOTALS), ("meshes", meshes, MESH_TOTALS))
-        }
-        whole: NDArray[Any] = np.empty(0, np.int64)
-        events: dict[str, NDArray[Any]] = dict.fromkeys(("kind", "pair", "flank", "mesh", "shaft"), whole)
-        return cls(
-            shafts=tuple(shafts),
-            meshes=tuple(meshes),
-            time=nothing,
-            samples={
-                **{name: np.empty((len(shafts), 0)) for name in SHAFT_SAMPLES},
-                **{name: np.empty((len(meshes), 0)) for name in MESH_SAMPLES},
-                **dict.fromkeys(COMMON_SAMPLES, nothing),
-            },
-            events={**events, **dict.fromkeys(("time", "gap_rate", "force"), nothing)},
-            shaft_totals=totals["shafts"],
-            mesh_totals=totals["meshes"],
-            energy=dict.fromkeys(ENERGIES, math.nan),
-            rests={"shaft": whole, "begin": nothing, "end": nothing},
+        sizes, nothing = (len(shafts), len(meshes)), np.empty(0)
+        return solution_of(
+            shafts,
+            meshes,
+            nothing,
+            nothing,
+            [np.empty((0, columns_of(table, *sizes))) for table in TABLES],
+            TrainTotals.none(*sizes),
             status=status,
             message=message,
             reached=0.0,
             start=0.0,
             statistics=Statistics(),
         )
+
+
+def solution_of(
+    shafts: Sequence[str],
+    meshes: Sequence[str],
+    time: NDArray[np.float64],
+    look_time: NDArray[np.float64],
+    tables: Sequence[NDArray[np.float64]],
+    totals: TrainTotals,
+    *,
+    status: str,
+    message: str,
+    reached: float,
+    start: float,
+    statistics: Statistics,
+    checkpoint: Words | None = None,
+) -> TrainSolution:
+    """Put a solution together.
+
+    Parameters
+    ----------
+    shafts, meshes : sequence of str
+        Names.
+    time, look_time : ndarray
+        Times of the samples and of the looks [s], of which the run may have reached the first ones alone.
+    tables : sequence of ndarrays
+        `TABLES`, as in a `TrainBlock`.
+    totals : TrainTotals
+    status, message, reached, start, statistics, checkpoint
+        Of the solution.
+    """
+    samples, looks, zeros, events, rests = tables
+    sizes = len(shafts), len(meshes)
+    at = {name: EVENT_COLUMNS.index(name) for name in _KEPT_OF_EVENTS}
+    rested = np.concatenate([rests, totals.resting])
+    return TrainSolution(
+        shafts=tuple(shafts),
+        meshes=tuple(meshes),
+        time=time[: len(samples)],
+        samples=_columns(samples, *sizes),
+        track=Track(look_time[: len(looks)], _columns(looks, *sizes), *zeros.T.copy()),
+        events={
+            name: events[:, i].astype(np.int64) if name in _WHOLE else events[:, i].copy()
+            for name, i in at.items()
+        },
+        shaft_totals=totals.shafts,
+        mesh_totals=totals.meshes,
+        energy=totals.energy,
+        rests={
+            "shaft": rested[:, 0].astype(np.int64),
+            "begin": rested[:, 1].copy(),
+            "end": rested[:, 2].copy(),
+        },
+        status=status,
+        message=message,
+        reached=reached,
+        start=start,
+        statistics=statistics,
+        checkpoint=checkpoint,
+    )
+
+
+def _columns(table: NDArray[np.float64], shafts: int, meshes: int) -> dict[str, NDArray[np.float64]]:
+    """Columns of samples by their names."""
+    count, first = len(table), len(SHAFT_SAMPLES) * shafts
+    last = first + len(MESH_SAMPLES) * meshes
+    of_shafts = table[:, :first].reshape(count, shafts, len(SHAFT_SAMPLES))
+    of_meshes = table[:, first:last].reshape(count, meshes, len(MESH_SAMPLES))
+    common = table[:, last:]
+    return {
+        **{name: np.ascontiguousarray(of_shafts[:, :, i].T) for i, name in enumerate(SHAFT_SAMPLES)},
+        **{name: np.ascontiguousarray(of_meshes[:, :, i].T) for i, name in enumerate(MESH_SAMPLES)},
+        **{name: np.ascontiguousarray(common[:, i]) for i, name in enumerate(COMMON_SAMPLES)},
+    }
 
 
 AnySolution: TypeAlias = Solution | TrainSolution

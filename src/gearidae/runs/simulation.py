@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from gearidae.errors import Interrupted, SceneError
 from gearidae.progress import RunProgress, run_progress
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
     import xarray as xr
 
-    from gearidae.records import Block
     from gearidae.scene import Scene
 
 
@@ -33,7 +32,7 @@ def simulate(
     overwrite: bool = False,
     resume: bool = False,
     start: xr.Dataset | str | os.PathLike[str] | None = None,
-    on_block: Callable[[Block], object] | None = None,
+    on_block: Callable[[Any], object] | None = None,
     compress: bool = True,
 ) -> xr.Dataset:
     """Run a scene.
@@ -69,8 +68,9 @@ def simulate(
         schedules are those of the time that goes on. The scene may differ in ``drive``, ``load``, ``coating``, ``run``
         and ``name``; its ``initial`` says nothing.
     on_block : callable, optional
-        Called with each block (`gearidae.records.Block`: samples, events, the time reached) as soon as it is there;
-        by returning True it ends the run, which keeps its data, with the status ``stopped``.
+        Called with each block (`gearidae.records.Block`: samples, events, the time reached; of a train
+        `gearidae.records.train_results.TrainBlock`) as soon as it is there; by returning True it ends the run, which
+        keeps its data, with the status ``stopped``.
     compress : bool, optional
         Whether the finished `archive` is compressed, as for `gearidae.save`.
 
@@ -101,18 +101,6 @@ def simulate(
     >>> ds = gd.simulate(scene, archive="low_speed.nc")  # doctest: +SKIP
     """
     scene = prepare(scene, rtol=rtol, samples=samples, backend=backend, trains=True)
-    if is_long_train(scene):
-        from gearidae.runs.train_run import simulate_train  # which few runs need
-
-        return simulate_train(
-            scene if t_end is None else _ending(scene, t_end, 0.0),
-            backend=backend,
-            progress=progress,
-            archive=archive,
-            overwrite=overwrite,
-            compress=compress,
-            others={"resume": resume, "start": start, "on_block": on_block},
-        )
     begin = started_from(start, scene)
     if (
         begin.scene is not None and begin.scene.initial is not None
@@ -120,6 +108,20 @@ def simulate(
         scene = scene.replace({"initial.mesh_phase": begin.scene.initial.mesh_phase})
     if t_end is not None:
         scene = _ending(scene, t_end, begin.time)
+    if is_long_train(scene):
+        from gearidae.runs.train_run import simulate_train  # which few runs need
+
+        return simulate_train(
+            scene,
+            backend=backend,
+            progress=progress,
+            archive=archive,
+            overwrite=overwrite,
+            resume=resume,
+            start=begin,
+            compress=compress,
+            on_block=on_block,
+        )
     scene = with_samples(scene)
     log_doubts(scene)
     # xarray takes a third of a second to import, longer than most runs take: it is not waited for before one

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from gearidae import engine
 from gearidae.errors import SceneError
-from gearidae.scene import Scene
+from gearidae.scene import Scene, is_long_train
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -62,6 +62,10 @@ def _end_of(attributes: Mapping[Any, Any]) -> engine.Start:
         theirs = Scene.from_dict(json.loads(attributes["scene"]))
     except (TypeError, ValueError) as error:
         raise SceneError("start", "scene", f"is not readable ({error})") from None
+    if is_long_train(theirs):
+        from gearidae.engine.train import end_of_train  # which few runs need
+
+        return end_of_train(theirs, words, began)
     return engine.end_of(theirs, words, began)
 
 

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from gearidae.records import Block, Solution, Statistics
     from gearidae.scene import Scene
 
-_FREE_SPACE = "free some space and go on with --resume (resume=True)"
+FREE_SPACE = "free some space and go on with --resume (resume=True)"
 
 
 def stream(
@@ -73,15 +73,15 @@ def stream(
     """
     beside = journal_of(target)
     if resume and target.exists():
-        finished = _finished(target, scene, start)
-        _drop(beside)  # a kill may have left one
+        finished = finished_before(target, scene, start)
+        drop(beside)  # a kill may have left one
         return finished
     run = _Run(scene, target, start, backend)
     with run.take_up(beside) if resume and beside.exists() else run.begin() as journal:
         with run_progress(progress, run.end) as report:
             ended = run.follow(journal, report, watched(report, on_block))
         ds = run.leave(journal, ended, compress=compress)
-    _drop(beside)
+    drop(beside)
     if ds.nbytes > LONGEST_WHOLE:  # it is in the journal no more
         ds = open_archive(target)
     if ended.status not in ("finished", "stopped"):
@@ -129,8 +129,8 @@ class _Run:
             allowed = f"cannot be resumed from {beside.name} ({reason}): start anew with --overwrite (overwrite=True)"
             raise SceneError("archive", self._target, allowed) from error
         try:
-            _refuse_other(self._target, journal.attributes, self._scene, self._start)
-            self._backend = _same_backend(self._backend, str(journal.attributes["backend"]))
+            refuse_other(self._target, journal.attributes, self._scene, self._start)
+            self._backend = same_backend(self._backend, str(journal.attributes["backend"]))
             engine.choose_backend(self._backend, self._scene.run.method)
         except BaseException:
             journal.close()
@@ -204,16 +204,10 @@ class _Run:
 
     def _interrupted(self) -> Interrupted:
         kept = f"the run up to there is in {self._target}; go on with --resume (resume=True)"
-        return Interrupted(kept, self._left())
+        return Interrupted(kept, left_of(self._target))
 
     def _not_written(self, reached: float, message: str) -> SolverError:
-        return early_end(self._left(), reached, message, _FREE_SPACE)
-
-    def _left(self) -> xr.Dataset:
-        """Read the journal of a run that has been left; its claim lasts until the error is there."""
-        ds = open_archive(self._target)
-        ds.attrs |= {"status": "interrupted", "message": f"{ds.attrs['message']}{RESUMABLE}"}
-        return ds
+        return early_end(left_of(self._target), reached, message, FREE_SPACE)
 
     def _ended_at(self, point: Checkpoint) -> Ended:
         """How a run ended of which only the archive's final form was missing."""
@@ -242,16 +236,23 @@ class _Run:
         return ds.assign_attrs(started_attributes(self._start))
 
 
+def left_of(target: Path) -> xr.Dataset:
+    """Read the journal of a run that has been left; its claim lasts until the error is there."""
+    ds = open_archive(target)
+    ds.attrs |= {"status": "interrupted", "message": f"{ds.attrs['message']}{RESUMABLE}"}
+    return ds
+
+
 def _is_end(time: float, duration: float) -> bool:
     """Whether a run's time, which went through its time unit and back, is the end of it."""
     return math.isclose(time, duration, rel_tol=1e-12)
 
 
-def _finished(target: Path, scene: Scene, start: engine.Start) -> xr.Dataset:
+def finished_before(target: Path, scene: Scene, start: engine.Start) -> xr.Dataset:
     """Open the archive of this very run, which is at its end; refuse any other."""
     ds = open_archive(target)
     try:
-        _refuse_other(target, ds.attrs, scene, start)
+        refuse_other(target, ds.attrs, scene, start)
         if (status := ds.attrs["status"]) != "finished":
             allowed = f"has ended early ({status}): there is nothing to go on with"
             raise SceneError("archive", target, allowed)
@@ -261,7 +262,7 @@ def _finished(target: Path, scene: Scene, start: engine.Start) -> xr.Dataset:
     return ds
 
 
-def _refuse_other(target: Path, attributes: Mapping[str, Any], scene: Scene, start: engine.Start) -> None:
+def refuse_other(target: Path, attributes: Mapping[str, Any], scene: Scene, start: engine.Start) -> None:
     """Refuse to resume a run with another scene, start or version, by the attributes of what is there."""
     differing = first_difference(json.loads(attributes["scene"]), scene.to_dict())
     refusal = ""
@@ -277,13 +278,13 @@ def _refuse_other(target: Path, attributes: Mapping[str, Any], scene: Scene, sta
         raise SceneError("archive", target, refusal)
 
 
-def _drop(beside: Path) -> None:
+def drop(beside: Path) -> None:
     """Delete a journal that nobody needs any more; Windows keeps one that somebody reads."""
     with suppress(PermissionError):
         beside.unlink(missing_ok=True)
 
 
-def _same_backend(backend: str, begun: str) -> str:
+def same_backend(backend: str, begun: str) -> str:
     """Go on with the backend that the run was begun with: another would take other steps."""
     if backend not in ("auto", begun):
         raise SceneError("backend", backend, f"the run was begun with {begun}, and goes on with nothing else")

@@ -3,18 +3,25 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
 
-from gearidae.errors import Interrupted, SceneError
+from gearidae.archive.disk import DiskError, disk_errors
+from gearidae.archive.journal import journal_of
+from gearidae.engine import AT_ONCE, Start
+from gearidae.errors import Interrupted, SceneError, SolverError
 from gearidae.progress import RunProgress, run_progress
 from gearidae.runs.plausibility import log_doubts
 from gearidae.runs.running import early_end
+from gearidae.runs.starting import started_attributes
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from gearidae.records.train_results import TrainSolution
+    from gearidae.archive.train.journal import TrainJournal
+    from gearidae.engine.train import OnTrainBlock
+    from gearidae.records.train_results import TrainBlock, TrainSolution
     from gearidae.scene import TrainScene
 
 
@@ -25,8 +32,10 @@ def simulate_train(
     progress: bool | RunProgress,
     archive: str | os.PathLike[str] | None,
     overwrite: bool,
+    resume: bool,
+    start: Start,
+    on_block: OnTrainBlock | None,
     compress: bool,
-    others: dict[str, Any],
 ) -> xr.Dataset:
     """Run a train; see `gearidae.simulate`.
 
@@ -34,52 +43,175 @@ def simulate_train(
     ----------
     scene : Scene
         Exactly as it is to be run.
-    others : dict
-        Arguments of `gearidae.simulate` that trains do not have, by name; refused unless they are None or False.
+    start : Start
+        Where the run begins.
+    on_block : callable, optional
+        Called with each `gearidae.records.train_results.TrainBlock`.
 
     Raises
     ------
     SceneError
-        If a setting is not for a train, or the archive cannot be written.
+        If a setting is not for a train, or the archive cannot be written or is of another run.
     SolverError
         If the solver could not reach the end: it carries what was computed, and `archive` holds the same.
     Interrupted
         On Ctrl-C, likewise.
     """
-    for name, value in others.items():
-        if value is not None and value is not False:
-            raise SceneError(name, type(value).__name__, "is not for a train of several meshes: leave it out")
     log_doubts(scene)
-    if archive is None:
-        return _ended(_run(scene, backend, progress))
-    from gearidae.archive.target import claims_output
+    if archive is not None:
+        from gearidae.archive.target import claims_output
 
-    with claims_output(archive, overwrite=overwrite) as target:
-        ds = _run(scene, backend, progress)
-        from gearidae.archive import open_archive, save
-
-        save(ds, target, overwrite=overwrite, compress=compress)
-        return _ended(open_archive(target))
+        with claims_output(archive, overwrite=overwrite or resume) as target:
+            return _stream(scene, target, backend, progress, resume, start, on_block, compress)
+    if resume:
+        raise SceneError("resume", resume, "needs the archive to go on from (archive=)")
+    return _ended(_run(scene, backend, progress, start, (), on_block))
 
 
-def _run(scene: TrainScene, backend: str, progress: bool | RunProgress) -> xr.Dataset:
-    with run_progress(progress, scene.run.duration) as report:
-        solution = run_train(scene, backend, report)
+def _run(
+    scene: TrainScene,
+    backend: str,
+    progress: bool | RunProgress,
+    start: Start,
+    blocks: Sequence[TrainBlock],
+    on_block: OnTrainBlock | None,
+) -> xr.Dataset:
+    with run_progress(progress, start.time + scene.run.duration) as report:
+        solution = run_train(scene, backend, report, start=start, blocks=blocks, on_block=on_block)
     from gearidae.archive.train import judged_view, train_dataset
     from gearidae.runs.imbalance import log_imbalance
 
-    ds = train_dataset(scene, solution)
+    ds = train_dataset(scene, solution).assign_attrs(started_attributes(start))
     log_imbalance(judged_view(ds))
     return ds
 
 
+def _stream(
+    scene: TrainScene,
+    target: Path,
+    backend: str,
+    progress: bool | RunProgress,
+    resume: bool,
+    start: Start,
+    on_block: OnTrainBlock | None,
+    compress: bool,
+) -> xr.Dataset:
+    """Run a train, or go on with a run of it, into an archive."""
+    from gearidae.archive import open_archive, save
+    from gearidae.runs.streaming import FREE_SPACE, drop, finished_before, left_of
+
+    beside = journal_of(target)
+    if resume and target.exists():
+        finished = finished_before(target, scene, start)
+        drop(beside)  # a kill may have left one
+        return finished
+    taking_up = resume and beside.exists()
+    with _taken_up(scene, target, start) if taking_up else _begun(scene, target, start, backend) as journal:
+        backend = str(journal.attributes["backend"]) if not taking_up else _same(backend, journal)
+
+        def take(block: TrainBlock) -> object:
+            with disk_errors():
+                journal.take(block)
+            return None if on_block is None else on_block(block)
+
+        try:
+            ds = _run(scene, backend, progress, start, journal.blocks(), take)
+            with disk_errors():
+                journal.flush()
+                if ds.attrs["status"] == "interrupted":
+                    raise KeyboardInterrupt
+                save(ds, target, overwrite=True, compress=compress)
+        except KeyboardInterrupt:
+            kept = f"the run up to there is in {target}; go on with --resume (resume=True)"
+            raise Interrupted(kept, left_of(target)) from None
+        except (DiskError, SceneError) as error:
+            raise _not_written(left_of(target), target, error, FREE_SPACE) from error
+    drop(beside)
+    return _ended(open_archive(target))
+
+
+def _same(backend: str, journal: TrainJournal) -> str:
+    """Go on with the driver that the run was begun with."""
+    from gearidae.runs.streaming import same_backend
+
+    return same_backend(backend, str(journal.attributes["backend"]))
+
+
+def _begun(scene: TrainScene, target: Path, start: Start, backend: str) -> TrainJournal:
+    """Make the journal of a run, in the place of an archive that may be replaced."""
+    from gearidae.archive.provenance import provenance
+    from gearidae.archive.train.journal import TrainJournal
+    from gearidae.engine.train import driver_of_train
+
+    attributes = {
+        **provenance(scene, "begun"),
+        "status": "running",
+        "backend": driver_of_train(backend),
+        **({"start_time": start.time} if start.time else {}),
+        **started_attributes(start),
+    }
+    try:
+        journal = TrainJournal.create(target, attributes)
+        target.unlink(missing_ok=True)
+    except OSError as error:
+        raise SolverError(
+            f"the archive {target} could not be made ({error.strerror or error})",
+            time=0.0,
+            state={},
+            last_event="none",
+            advice="free some space, or reduce the number of samples (run.samples)",
+        ) from error
+    return journal
+
+
+def _taken_up(scene: TrainScene, target: Path, start: Start) -> TrainJournal:
+    """Open the journal that is there, and make sure that it is of this very run."""
+    from gearidae.archive.train.journal import TrainJournal
+    from gearidae.runs.streaming import refuse_other
+
+    beside = journal_of(target)
+    try:
+        journal = TrainJournal(beside, "a")
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        allowed = (
+            f"cannot be resumed from {beside.name} ({reason}): start anew with --overwrite (overwrite=True)"
+        )
+        raise SceneError("archive", target, allowed) from error
+    try:
+        refuse_other(target, journal.attributes, scene, start)
+    except BaseException:
+        journal.close()
+        raise
+    return journal
+
+
+def _not_written(left: xr.Dataset, target: Path, error: Exception, advice: str) -> SolverError:
+    """Error of a run whose archive the disk does not take; the journal keeps what there is of it."""
+    from gearidae.archive.train import judged_view
+
+    reached = float(left["reached"])
+    message = f"the archive {target} could not be written ({error})"
+    made = early_end(judged_view(left), reached, message, advice)
+    made.dataset = left
+    return made
+
+
 def run_train(
-    scene: TrainScene, backend: str, on_progress: Callable[[float, int], None] | None = None
+    scene: TrainScene,
+    backend: str,
+    on_progress: Callable[[float, int], None] | None = None,
+    *,
+    start: Start = AT_ONCE,
+    blocks: Sequence[TrainBlock] = (),
+    on_block: OnTrainBlock | None = None,
 ) -> TrainSolution:
-    """Run a train and judge it, with a status that says how it ended."""
+    """Run a train and judge it, with a status that says how it ended; see `gearidae.engine.train.solve_train`."""
     from gearidae.engine.train import solve_train  # what reads results does without it
 
-    solution = solve_train(scene, backend=backend, on_progress=on_progress)
+    solution = solve_train(
+        scene, backend=backend, on_progress=on_progress, start=start, blocks=blocks, on_block=on_block
+    )
     from gearidae.analysis.verdict.train import judge_train
 
     return judge_train(scene, solution)
@@ -91,7 +223,7 @@ def _ended(ds: xr.Dataset) -> xr.Dataset:
     if status == "interrupted":
         where = f"t = {reached:.4g} s of {ds.attrs['t_end']:.4g} s"
         raise Interrupted(f"stopped at {where}; what was computed is the error's dataset", ds)
-    if status != "finished":
+    if status not in ("finished", "stopped"):
         from gearidae.archive.train import judged_view
 
         error = early_end(judged_view(ds), reached)

@@ -9,6 +9,17 @@ MAY_CHANGE: Final = ("name", "drive", "load", "coating", "initial", "run")
 """What may differ between a run and the one that it goes on from, whose end is its start."""
 
 
+def may_change(tables: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return the keys and tables in which a run may differ from the one that it goes on from.
+
+    Parameters
+    ----------
+    tables : mapping
+        Of the run before, as `Scene.to_dict` gives them; of a train the coatings of its meshes are among them.
+    """
+    return (*MAY_CHANGE, *(f"meshes.{name}.coating" for name in tables.get("meshes", ())))
+
+
 def first_difference(
     first: Mapping[str, Any], second: Mapping[str, Any], ignored: Iterable[str] = ()
 ) -> tuple[str, Any, Any] | None:

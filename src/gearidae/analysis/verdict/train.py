@@ -206,7 +206,8 @@ def _judged(motion: _Motion, free: FreeTrain, zero: float, end: float, inside: A
     times = np.union1d(motion.time[inside], [end])
     away = np.abs(np.interp(times, motion.time, motion.angle) - place) / motion.pitch
     advance = float(away.max())
-    drifted = np.abs(free.positions(zero, place, times) - place) / motion.pitch
+    # of a run that goes on the torques before its start are not known
+    drifted = np.abs(free.positions(max(zero, motion.begin), place, times) - place) / motion.pitch
     ahead, half = float(drifted.max()), times <= 0.5 * (zero + end)
     calm = 0.0 < ahead <= SETTLED_WITHIN and half.any() and ahead <= float(drifted[half].max())
     together = bool(calm and advance <= float(away[half].max()))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -14,11 +15,15 @@ from gearidae.engine.model.addresses import Addresses
 from gearidae.engine.model.state import DRIVE, Floats, Model, Record
 from gearidae.engine.pairs.mesh_error import mesh_error
 from gearidae.engine.setup.build import make_problem
+from gearidae.engine.setup.checkpoint import scene_digest
 from gearidae.engine.setup.problem import Problem
+from gearidae.engine.setup.start import AT_ONCE, Start
 from gearidae.engine.train.layout import TrainModel, blank_train
+from gearidae.engine.train.loop import LOOKS
 from gearidae.engine.train.observe import kinetic_energy_of, write_stored
 from gearidae.engine.train.start import begin_train
 from gearidae.errors import SceneError
+from gearidae.records import first_sample
 from gearidae.scene import Drive, GearScene, Load
 from gearidae.scene.joints import pushes
 from gearidae.scene.judged import judged_shaft
@@ -46,6 +51,8 @@ class TrainProblem:
         At the start, see `gearidae.engine.train.observe.write_stored`.
     kinetic : float
         Kinetic energy at the start [J].
+    digest : tuple of four floats
+        Identifies this scene's checkpoints.
     """
 
     scene: TrainScene
@@ -54,16 +61,24 @@ class TrainProblem:
     addresses: tuple[Addresses, ...]
     energies: Floats = field(init=False)
     kinetic: float = field(init=False)
+    digest: tuple[float, ...] = field(init=False)
 
     def __post_init__(self) -> None:
-        """Note the energies at the start."""
+        """Note the energies at the start, and what tells the scene from others."""
+        self.digest = scene_digest(json.dumps(self.scene.to_dict(), sort_keys=True, default=str))
         self.energies = np.zeros(3 * len(self.problems))
         write_stored(self.model, self.model.y, self.energies)
         self.kinetic = float(kinetic_energy_of(self.model, self.model.y))
 
 
-def make_train(scene: TrainScene) -> TrainProblem:
+def make_train(scene: TrainScene, start: Start = AT_ONCE) -> TrainProblem:
     """Lay a train out and set it to its start.
+
+    Parameters
+    ----------
+    scene : Scene
+    start : Start, optional
+        Of a run that goes on from another, whose time alone is used.
 
     Raises
     ------
@@ -73,12 +88,12 @@ def make_train(scene: TrainScene) -> TrainProblem:
     make_part_ready(TRAIN)
     train = scene.train
     _refuse(scene, train)
-    pairs, problems = _pairs(scene, train)
+    pairs, problems = _pairs(scene, train, Start(start.time))
     addresses = tuple(_alone(problem.model) for problem in problems)
     tm = blank_train(len(train.shafts), len(train.meshes))
     _add_meshes(tm, scene, train, problems, addresses)
     _add_shafts(tm, scene, train)
-    _add_train(tm, scene, train, problems)
+    _add_train(tm, scene, train, problems, start.time)
     _set_start(tm, scene, train, pairs, problems)
     begin_train(tm)
     return TrainProblem(scene, tm, problems, addresses)
@@ -104,7 +119,7 @@ def _refuse(scene: TrainScene, train: Train) -> None:
             "run.samples",
             "how its contacts ring is not known before: samples must be a number or a rate",
         ),
-        (bool(run.checkpoints), "run.checkpoints", "a train keeps no checkpoints yet"),
+        (bool(run.checkpoints), "run.checkpoints", "its checkpoints are where its blocks end"),
     )
     for there, key, reason in refused:
         if there:
@@ -123,7 +138,7 @@ def _ends(train: Train) -> tuple[int, int]:
     return drive, load
 
 
-def _pairs(scene: TrainScene, train: Train) -> tuple[list[GearScene], tuple[Problem, ...]]:
+def _pairs(scene: TrainScene, train: Train, start: Start) -> tuple[list[GearScene], tuple[Problem, ...]]:
     """Every mesh as a pair of gears: the first at the drive with its torques, the first at the load with those.
 
     What a pair takes for small depends on its torques; of the others that is the torque of the drive as a rigid train
@@ -138,7 +153,7 @@ def _pairs(scene: TrainScene, train: Train) -> tuple[list[GearScene], tuple[Prob
     pairs, problems = {}, {}
     for k in {first, last}:
         pairs[k] = _pair(scene, train, k, drive if k == first else Drive(), load if k == last else Load())
-        problems[k] = make_problem(pairs[k])
+        problems[k] = make_problem(pairs[k], start=start)
     # the largest torque of the drive's shaft that either end stands for
     torque = max(
         float(problem.model.scene.force_unit) * train.meshes[k].geometry.base_radius_pinion * shares[k]
@@ -147,7 +162,7 @@ def _pairs(scene: TrainScene, train: Train) -> tuple[list[GearScene], tuple[Prob
     for k, share in enumerate(shares):
         if k not in problems:
             pairs[k] = _pair(scene, train, k, Drive(torque=torque / share), Load())
-            problems[k] = make_problem(pairs[k])
+            problems[k] = make_problem(pairs[k], start=start)
     order = range(len(train.meshes))
     return [pairs[k] for k in order], tuple(problems[k] for k in order)
 
@@ -225,7 +240,9 @@ def _add_shafts(tm: TrainModel, scene: TrainScene, train: Train) -> None:
         )
 
 
-def _add_train(tm: TrainModel, scene: TrainScene, train: Train, problems: tuple[Problem, ...]) -> None:
+def _add_train(
+    tm: TrainModel, scene: TrainScene, train: Train, problems: tuple[Problem, ...], start: float
+) -> None:
     """Set what is of the train as a whole."""
     record, drive, run = tm.train[0], scene.drive, scene.run
     record.drive, record.load, record.judged = train.drive, train.load, judged_shaft(scene)
@@ -252,7 +269,10 @@ def _add_train(tm: TrainModel, scene: TrainScene, train: Train, problems: tuple[
     # histories go round: each keeps its place where all slots have gone by
     slots = max(int(problem.model.scene.slots) for problem in problems)
     record.period = whole * slots * math.ceil(TURNS_LOW / (whole * slots))
-    record.balance, record.end, record.samples = int(run.balance), run.duration, run.sample_count
+    record.balance, record.samples = int(run.balance), run.sample_count
+    record.start, record.end = start, start + run.duration
+    record.first_sample = first_sample(start, start + run.duration, run.sample_count)
+    record.first_look = first_sample(start, start + run.duration, LOOKS)
     word, _, turns = run.stop.partition(" ")
     record.stop_pitches = float(turns) * teeth if word == "turns" else math.inf
     _add_tolerances(tm, scene, problems)

@@ -44,6 +44,13 @@ FALLEN_AT_ONCE: Final = 4
 """Guards that one after the other fall at the same time, at most: what has been dealt with may let others fall."""
 
 
+@compiled
+def train_way_left(tm: TrainModel, y: Floats) -> float:
+    """Way of the load's gear to where the run ends, in pitches; infinite where time alone ends it."""
+    train = tm.train[0]
+    return float(train.stop_pitches - abs(y[train.load] + train.turns - train.stop_from))
+
+
 @compiled_once(TRAIN)
 def train_guard(tm: TrainModel, t: float, y: Floats, evaluated: bool) -> float:
     """Root function of a train at a time [s]: it falls through zero at the first of all possible events.
@@ -62,7 +69,7 @@ def train_guard(tm: TrainModel, t: float, y: Floats, evaluated: bool) -> float:
         least = min(least, mesh_guard(m, t / mesh.time_unit, tm.own))
     if not evaluated and any_held(tm):
         motion(tm, t, y, tm.rates[15])
-    least = min(least, rest_guard(tm, y), train.stop_pitches - abs(y[train.load] + train.turns))
+    least = min(least, rest_guard(tm, y), train_way_left(tm, y))
     return least if least != 0.0 else _TINY
 
 

@@ -99,7 +99,10 @@ TRAIN: Final = record_type(
     ("end", REAL),  # [s]
     ("samples", INT),
     ("judged", INT),  # shaft that is judged
+    ("first_sample", REAL),  # start over the spacing of the samples, and over that of the looks
+    ("first_look", REAL),
     ("stop_pitches", REAL),  # way of the load's gear at which the run ends; infinite for none
+    ("stop_from", REAL),  # place of the load's gear from which that counts
     ("longest_step", REAL),  # [s]
     ("rest_step", REAL),  # longest while a shaft is held [s]
     ("tau", REAL),  # fastest time of the meshes [s]

@@ -15,6 +15,7 @@ from gearidae.engine.train.events import (
     rebase_train,
     switch_all,
     train_guard,
+    train_way_left,
 )
 from gearidae.engine.train.formula import attempt, make_polynomial, next_length, state_at
 from gearidae.engine.train.layout import TrainModel, TrainOutput
@@ -75,26 +76,28 @@ def locate(tm: TrainModel, h: float) -> float:
 
 
 @compiled
-def _due(tm: TrainModel, index: int, count: int) -> float:
+def _due(tm: TrainModel, first: float, index: int, count: int) -> float:
     """Time of one of so many looks at a run [s]: the first at the start, the last at the end itself, none beyond."""
     train = tm.train[0]
     if index >= count:
         return math.inf
     if index == count - 1:
         return float(train.end)
-    return float(train.start + index * ((train.end - train.start) / (count - 1)))
+    if index == 0:
+        return float(train.start)
+    return float((first + index) * ((train.end - train.start) / (count - 1)))
 
 
 @compiled
 def sample_due(tm: TrainModel) -> float:
     """Time of the coming sample [s]."""
-    return _due(tm, tm.train[0].next_sample, tm.train[0].samples)
+    return _due(tm, tm.train[0].first_sample, tm.train[0].next_sample, tm.train[0].samples)
 
 
 @compiled
 def look_due(tm: TrainModel) -> float:
     """Time of the coming look by which the run is judged [s]."""
-    return _due(tm, tm.train[0].next_look, LOOKS)
+    return _due(tm, tm.train[0].first_look, tm.train[0].next_look, LOOKS)
 
 
 @compiled
@@ -195,7 +198,7 @@ def finish_train_step(tm: TrainModel, time: float, root: bool, stop: float, out:
         train.restarts += 1
         if switch_all(tm, time, y, out):
             train.error = CHATTER
-        if train.stop_pitches - abs(y[train.load] + train.turns) <= 0.0:
+        if train_way_left(tm, y) <= 0.0:
             train.done = 1
     if time >= stop:
         train.fresh = 1

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
-from typing import Final
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Final, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,31 +14,28 @@ from numpy.typing import NDArray
 from gearidae.compiled import compiles
 from gearidae.engine.compiling import HOW_LONG, TRAIN, compiling
 from gearidae.engine.integrate.driver import ending_of_flag
+from gearidae.engine.setup.start import AT_ONCE, Start
 from gearidae.engine.train.build import TrainProblem, make_train
+from gearidae.engine.train.continuing import pack_train, restore_train, train_from
 from gearidae.engine.train.layout import OF_MESH, OF_SHAFT, TrainModel, TrainOutput
 from gearidae.engine.train.loop import LOOKS, advance_train
 from gearidae.engine.train.motion import torque_slopes
-from gearidae.engine.train.observe import (
-    COMMON_COLUMNS,
-    MESH_COLUMNS,
-    SHAFT_COLUMNS,
-    kinetic_energy_of,
-    write_stored,
-)
+from gearidae.engine.train.observe import kinetic_energy_of, write_stored
 from gearidae.engine.train.portable import PortableDriver
-from gearidae.engine.train.record import MESH_AT, REST_NUMBERS, SHAFT_AT, TRAIN_EVENT_NUMBERS
+from gearidae.engine.train.record import REST_NUMBERS, TRAIN_EVENT_NUMBERS
 from gearidae.errors import SceneError
-from gearidae.records import EVENT, Statistics, sample_times
+from gearidae.records import Statistics, sample_times
 from gearidae.records.energy import EnergyBalance
 from gearidae.records.train_results import (
-    COMMON_SAMPLES,
     ENERGIES,
-    MESH_SAMPLES,
-    SHAFT_SAMPLES,
+    TABLES,
     WORKS_OF_MESHES,
     WORKS_OF_SHAFTS,
-    Track,
+    TrainBlock,
     TrainSolution,
+    TrainTotals,
+    sample_columns,
+    solution_of,
 )
 from gearidae.scene.scene import TrainScene
 
@@ -52,31 +50,46 @@ STEPS, PORTABLE_STEPS = 20_000, 1_000
 class _Kept:
     """What the blocks of a run have left."""
 
-    def __init__(self, columns: int) -> None:
+    def __init__(self, shafts: int, meshes: int) -> None:
         self.out = TrainOutput(
-            np.empty((ROWS, columns)),
-            np.empty((ROWS, columns)),
+            np.empty((ROWS, sample_columns(shafts, meshes))),
+            np.empty((ROWS, sample_columns(shafts, meshes))),
             np.empty((EVENTS, 2)),
             np.empty((EVENTS, TRAIN_EVENT_NUMBERS)),
             np.empty((EVENTS, REST_NUMBERS)),
         )
         self._tables = [[table[:0].copy()] for table in self.out]
+        self._told = [0] * len(TABLES)
         self.events = 0
 
     def take(self, problem: TrainProblem) -> None:
-        """Take a block over."""
+        """Take what a block holds over."""
         train = problem.model.train[0]
         names = ("rows", "looks", "zeros", "events", "rests")
         counts = [int(train[name]) for name in names]
-        for kept, table, count in zip(self._tables, self.out, counts, strict=True):
-            kept.append(table[:count].copy())
-        self.events += int(train.events)
+        self.add([table[:count].copy() for table, count in zip(self.out, counts, strict=True)])
         for name in names:
             train[name] = 0
+
+    def add(self, tables: Sequence[NDArray[np.float64]]) -> None:
+        """Add samples, looks, zeros, events and rests."""
+        for kept, table in zip(self._tables, tables, strict=True):
+            kept.append(table)
+        self.events += len(tables[TABLES.index("events")])
+
+    def untold(self) -> list[NDArray[np.float64]]:
+        """Return what has been added since this was asked last."""
+        tables = [np.concatenate(kept[told:]) for kept, told in zip(self._tables, self._told, strict=True)]
+        self._told = [len(kept) for kept in self._tables]
+        return tables
 
     def tables(self) -> list[NDArray[np.float64]]:
         """Samples, looks, zeros, events and rests."""
         return [np.concatenate(kept) for kept in self._tables]
+
+
+OnTrainBlock: TypeAlias = Callable[[TrainBlock], object]
+"""Called with every block; a return value of True ends the run."""
 
 
 def solve_train(
@@ -87,6 +100,9 @@ def solve_train(
     samples: int | str | None = None,
     backend: str = "auto",
     on_progress: Callable[[float, int], None] | None = None,
+    start: Start = AT_ONCE,
+    blocks: Sequence[TrainBlock] = (),
+    on_block: OnTrainBlock | None = None,
 ) -> TrainSolution:
     """Run a scene with several meshes and collect all of it.
 
@@ -98,6 +114,12 @@ def solve_train(
         ``auto`` and ``native`` take the compiled loop with a formula of order 8, ``sksundae`` IDA of scikit-sundae.
     on_progress : callable, optional
         Called now and then with the simulated time reached [s] and the number of events so far.
+    start : Start, optional
+        Of a run that goes on from another.
+    blocks : sequence of TrainBlock, optional
+        Those of this very run before it has been interrupted: it goes on behind them.
+    on_block : callable, optional
+        Called with every block; ends the run by returning True.
 
     Returns
     -------
@@ -107,47 +129,94 @@ def solve_train(
     Raises
     ------
     SceneError
-        If the scene is beyond what the engine can do.
+        If the scene is beyond what the engine can do, or the start is not of these gears.
     """
     if not compiles():
         raise SceneError("NUMBA_DISABLE_JIT", 1, "must not be set: the solver runs compiled only")
-    if backend not in ("auto", "native", "sksundae"):
-        raise SceneError("backend", backend, "must be auto, native or sksundae")
     arguments = {"run.rtol": rtol, "run.duration": t_end, "run.samples": samples}
     changes = {key: value for key, value in arguments.items() if value is not None}
+    if changes:
+        scene = scene.replace(changes)
+    driver = driver_of_train(backend)
+    kept = _Kept(len(scene.train.shafts), len(scene.train.meshes))
     with compiling(TRAIN, HOW_LONG[TRAIN]):
-        problem = make_train(scene.replace(changes) if changes else scene)
-    return follow_train(problem, "sksundae" if backend == "sksundae" else "native", on_progress)
+        if blocks:
+            problem = make_train(scene, start)
+            restore_train(problem, blocks[-1].checkpoint)
+            for block in blocks:
+                kept.add([block.tables[name] for name in TABLES])
+            kept.untold()
+        else:
+            problem = make_train(scene) if start.scene is None else train_from(scene, start, kept.out)
+    return _follow(problem, driver, kept, on_progress, on_block, blocks[-1].wall_time if blocks else 0.0)
 
 
-def follow_train(
-    problem: TrainProblem, backend: str, on_progress: Callable[[float, int], None] | None = None
-) -> TrainSolution:
+def driver_of_train(backend: str) -> str:
+    """Return the driver that runs a train, ``native`` or ``sksundae``.
+
+    Raises
+    ------
+    SceneError
+        If there is none of this name.
+    """
+    if backend not in ("auto", "native", "sksundae"):
+        raise SceneError("backend", backend, "must be auto, native or sksundae")
+    return "sksundae" if backend == "sksundae" else "native"
+
+
+def follow_train(problem: TrainProblem, backend: str) -> TrainSolution:
     """Run a train that has been laid out; see `solve_train`."""
+    kept = _Kept(len(problem.model.shafts), len(problem.model.meshes))
+    return _follow(problem, backend, kept, None, None, 0.0)
+
+
+def _follow(
+    problem: TrainProblem,
+    backend: str,
+    kept: _Kept,
+    on_progress: Callable[[float, int], None] | None,
+    on_block: OnTrainBlock | None,
+    wall_time: float,
+) -> TrainSolution:
+    """Run a train from where it stands.
+
+    Every block begins from its checkpoint, so that a run which is resumed there takes the same steps.
+    """
     tm, train = problem.model, problem.model.train[0]
-    kept = _Kept(SHAFT_COLUMNS * len(tm.shafts) + MESH_COLUMNS * len(tm.meshes) + COMMON_COLUMNS)
-    status, message = "", ""
+    status, message, words = "", "", None
     portable = None
-    if backend == "sksundae":
-        portable = PortableDriver(tm, _energy_of_run(problem), problem.scene.run.rtol)
     with compiling(TRAIN, HOW_LONG[TRAIN]):
         advance_train(tm, kept.out, 0)
-    begun = time.perf_counter()
+    begun = time.perf_counter() - wall_time
     try:
         while train.done == 0 and train.error == 0:
-            if portable is None:
+            if backend == "native":
                 advance_train(tm, kept.out, STEPS)
             else:
+                portable = PortableDriver(tm, _energy_of_run(problem), problem.scene.run.rtol)
                 portable.advance(kept.out, PORTABLE_STEPS, lambda: kept.take(problem))
             kept.take(problem)
+            if train.error == 0:
+                words = pack_train(problem)
+            if words is not None and train.done == 0:
+                restore_train(problem, words)
+            if on_block is not None and words is not None:
+                seconds = time.perf_counter() - begun
+                tables = dict(zip(TABLES, kept.untold(), strict=True))
+                block = TrainBlock(float(train.time), seconds, tables, words, _totals(problem))
+                if on_block(block) is True:
+                    status, message = "stopped", "ended by on_block"
+                    break
             if on_progress is not None:
                 on_progress(float(train.time), kept.events)
     except KeyboardInterrupt:
+        kept.take(problem)
         status, message = "interrupted", "interrupted by the user"
     statistics = _statistics(problem, backend, time.perf_counter() - begun)
     if not status:
         status, message = statistics.ending.status, statistics.message
-    return _solution(problem, kept, statistics, status, message)
+    solution = _solution(problem, kept, statistics, status, message)
+    return solution if train.error or status == "interrupted" else replace(solution, checkpoint=words)
 
 
 def _energy_of_run(problem: TrainProblem) -> float:
@@ -181,64 +250,33 @@ def _solution(
     problem: TrainProblem, kept: _Kept, statistics: Statistics, status: str, message: str
 ) -> TrainSolution:
     """Put a solution together."""
-    scene, tm = problem.scene, problem.model
-    laid = scene.train
-    samples, looks, zeros, events, rests = kept.tables()
-    start, end = float(tm.train[0].start), float(tm.train[0].end)
-    places = {name: getattr(EVENT, name) for name in ("time", "kind", "pair", "flank", "gap_rate", "force")}
-    places |= {"mesh": MESH_AT, "shaft": SHAFT_AT}
-    whole = ("kind", "pair", "flank", "mesh", "shaft")
-    shaft_totals, mesh_totals, energy = _totals(problem)
-    return TrainSolution(
-        shafts=tuple(shaft.name for shaft in laid.shafts),
-        meshes=tuple(mesh.name for mesh in laid.meshes),
-        time=sample_times(0.0, scene.run.duration, scene.run.sample_count)[: len(samples)],
-        samples=_columns(problem, samples),
-        track=Track(sample_times(start, end, LOOKS)[: len(looks)], _columns(problem, looks), *zeros.T.copy()),
-        events={
-            name: events[:, place].astype(np.int64) if name in whole else events[:, place].copy()
-            for name, place in places.items()
-        },
-        shaft_totals=shaft_totals,
-        mesh_totals=mesh_totals,
-        energy=energy,
-        rests=_rests(tm, rests),
+    laid, train, run = problem.scene.train, problem.model.train[0], problem.scene.run
+    return solution_of(
+        [shaft.name for shaft in laid.shafts],
+        [mesh.name for mesh in laid.meshes],
+        sample_times(float(train.start), run.duration, run.sample_count),
+        sample_times(float(train.start), run.duration, LOOKS),
+        kept.tables(),
+        _totals(problem),
         status=status,
         message=message,
-        reached=float(tm.train[0].time),
-        start=start,
+        reached=float(train.time),
+        start=float(train.start),
         statistics=statistics,
     )
 
 
-def _columns(problem: TrainProblem, table: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
-    """Columns of samples by their names."""
-    n, meshes, count = len(problem.model.shafts), len(problem.model.meshes), len(table)
-    of_shafts = table[:, : SHAFT_COLUMNS * n].reshape(count, n, SHAFT_COLUMNS)
-    of_meshes = table[:, SHAFT_COLUMNS * n : SHAFT_COLUMNS * n + MESH_COLUMNS * meshes]
-    of_meshes = of_meshes.reshape(count, meshes, MESH_COLUMNS)
-    common = table[:, -COMMON_COLUMNS:]
-    return {
-        **{name: np.ascontiguousarray(of_shafts[:, :, i].T) for i, name in enumerate(SHAFT_SAMPLES)},
-        **{name: np.ascontiguousarray(of_meshes[:, :, i].T) for i, name in enumerate(MESH_SAMPLES)},
-        **{name: np.ascontiguousarray(common[:, i]) for i, name in enumerate(COMMON_SAMPLES)},
-    }
-
-
-def _rests(tm: TrainModel, ended: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
-    """Intervals at rest, with those that have not ended."""
-    open_ones = [
+def _resting(tm: TrainModel) -> NDArray[np.float64]:
+    """Intervals at rest that have not ended."""
+    rows = [
         (i, float(shaft["rest_begin"]), float(tm.train[0].time))
         for i, shaft in enumerate(tm.shafts)
         if shaft["rubs"] and shaft["slip"] == 0.0
     ]
-    table = np.concatenate([ended, np.array(open_ones, dtype=float).reshape(-1, REST_NUMBERS)])
-    return {"shaft": table[:, 0].astype(np.int64), "begin": table[:, 1].copy(), "end": table[:, 2].copy()}
+    return np.array(rows, dtype=float).reshape(-1, REST_NUMBERS)
 
 
-def _totals(
-    problem: TrainProblem,
-) -> tuple[dict[str, NDArray[np.float64]], dict[str, NDArray[np.float64]], dict[str, float]]:
+def _totals(problem: TrainProblem) -> TrainTotals:
     """Totals of shafts, of meshes, and energies of the train, at the time reached."""
     tm, scene = problem.model, problem.scene
     n, meshes, y = len(tm.shafts), len(tm.meshes), tm.y
@@ -293,7 +331,7 @@ def _totals(
         taken = float(lost) + energy["stored_change"] + kinetic
         energy["residual"] = drive + energy["radius_work"] - taken
         energy["residual_bound"] = _bound(problem, energy, float(adhesion.sum()), float(np.abs(before).sum()))
-    return shaft_totals, mesh_totals, energy
+    return TrainTotals(shaft_totals, mesh_totals, energy, _resting(tm))
 
 
 def _bound(problem: TrainProblem, energy: dict[str, float], adhesion: float, stored: float) -> float:

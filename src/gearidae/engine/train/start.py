@@ -27,20 +27,38 @@ def begin_train(tm: TrainModel) -> None:
     t = train.time = train.start
     for k in range(len(tm.meshes)):
         mesh = tm.meshes[k]
-        m, time = model_at(mesh.place), t / mesh.time_unit
-        set_law_window(m)
+        m = model_at(mesh.place)
         e = mesh_state(tm, k, m, y, tm.own)
         m.state.initial_lead = tm.own[U] + e.value
-        begin(mesh.place, time, tm.own)
-        if m.scene.law_switches != 0:
-            set_law_sides(m, time, tm.own)
-        if watches_cutoff(m):
-            begin_within(m, tm.own)
+        begin(mesh.place, t / mesh.time_unit, tm.own)
         energy = m.state.energy
         energy.adhesion_loss = energy.radius_work = 0.0
-        adhesion_loss.begin(m, time)
+    take_up(tm)
     begin_rest(tm, t, y)
     motion(tm, t, y, tm.rates[0])
     begin_extremes(tm, t, y)
     train.kinetic = train.peak_kinetic = train.throughput = kinetic_energy_of(tm, y)
-    train.step, train.fresh = FIRST * train.tau, 1
+    train.step = FIRST * train.tau
+
+
+@compiled
+def take_up(tm: TrainModel) -> None:
+    """Set what follows from the state of a train, at its start or where it has been taken back."""
+    train = tm.train[0]
+    for k in range(len(tm.meshes)):
+        mesh = tm.meshes[k]
+        m, time = model_at(mesh.place), train.time / mesh.time_unit
+        mesh_state(tm, k, m, tm.y, tm.own)
+        set_law_window(m)
+        if m.scene.law_switches != 0:
+            set_law_sides(m, time, tm.own)
+        if watches_cutoff(m):
+            begin_within(m, tm.own)
+        adhesion_loss.begin(m, time)
+    train.fresh = 1
+
+
+@compiled
+def write_own_state(tm: TrainModel, k: int) -> None:
+    """Write the state of a mesh's pair in its own units to ``tm.own``."""
+    mesh_state(tm, k, model_at(tm.meshes[k].place), tm.y, tm.own)
