@@ -151,11 +151,12 @@ def _refuse_jump(before: xr.Dataset, after: xr.Dataset, name: str) -> None:
     for variable in _CONTINUOUS:
         if variable not in after:
             continue
-        old, new = float(before[variable][-1]), float(after[variable][0])
+        old, new = before[variable].values[..., -1], after[variable].values[..., 0]
         extent = max(float(abs(part[variable]).max()) for part in (before, after))
-        if abs(new - old) > tolerance * extent:
+        if (np.abs(new - old) > tolerance * extent).any():
+            there, wanted = (", ".join(f"{value:g}" for value in np.ravel(values)) for values in (new, old))
             raise SceneError(
-                variable, f"{new:g}", f"at the start of {name} must be {old:g}, as the run before ended"
+                variable, there, f"at the start of {name} must be {wanted}, as the run before ended"
             )
 
 

@@ -68,7 +68,7 @@ def concat(datasets: Iterable[xr.Dataset] | Mapping[str, xr.Dataset], dim: str) 
         if not isinstance(part, xr.Dataset):
             raise SceneError(part_name(number), type(part).__name__, "must be a dataset")
         scene_of(part)
-        if is_train(part):
+        if is_train(part) and dim != "time":
             allowed = (
                 "cannot be joined: they are of trains of several meshes, which gearidae.sweep runs into one"
             )
