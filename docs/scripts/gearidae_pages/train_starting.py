@@ -13,6 +13,7 @@ from typing import Any, Final
 
 import numpy as np
 import xarray as xr
+from scipy.stats import binomtest
 
 import gearidae as gd
 
@@ -62,8 +63,16 @@ def drawn(scene: gd.Scene, count: int, coverage: tuple[float, float], seed: int 
         for mesh in MESHES:
             changes[f"meshes.{mesh}.phase"] = numbers.uniform()
             changes[f"meshes.{mesh}.coating.sam_fraction"] = numbers.uniform(*coverage)
-        torques.append(gd.studies.starting_torque(scene.replace(changes), lowest=LOWEST, progress=False))
+        torques.append(
+            gd.studies.starting_torque(scene.replace(changes), lowest=LOWEST, simulated=False, progress=False)
+        )
     return torques
+
+
+def of(count: int, total: int) -> str:
+    """Write a count with the 95 % interval of its share, Wilson's."""
+    interval = binomtest(count, total).proportion_ci(method="wilson")
+    return f"{count} of {total} ({interval.low:.0%} to {interval.high:.0%})"
 
 
 def shown(torques: list[xr.Dataset]) -> str:
@@ -78,14 +87,16 @@ def shown(torques: list[xr.Dataset]) -> str:
     lines = ["| stage | holds most in | mean share of what adhesion takes |", "|---|---|---|"]
     shares = adhesion[held] / adhesion[held].sum("part")
     for mesh in MESHES:
-        share = float(shares.sel(part=f"adhesion of {mesh}").mean())
-        lines.append(f"| {mesh} | {counts[mesh]} of {len(torques)} | {share:.0%} |")
+        share = shares.sel(part=f"adhesion of {mesh}").values
+        error = share.std(ddof=1) / np.sqrt(share.size)
+        lines.append(f"| {mesh} | {of(counts[mesh], len(torques))} | {share.mean():.0%} +- {error:.0%} |")
+    lines.append(f"| none | {of(len(torques) - int(held.sum()), len(torques))} | |")
     low, middle, high = np.quantile(totals - dry, [0.1, 0.5, 0.9])
     several = int(((shares > 0.05).sum("part") > 1).sum())
     lines += [
         "",
         f"beyond the dry load's {dry:.3g} N m, 10, 50 and 90 % start below {low:.3g}, {middle:.3g}, {high:.3g} N m",
-        f"two stages or more hold at once in {several}; adhesion holds {held.sum()} of {len(torques)}",
+        f"two stages or more hold at once in {several}",
     ]
     return "\n".join(lines) + "\n"
 
