@@ -99,7 +99,7 @@ def test_bare_surfaces_hold_with_what_the_fully_stretched_contact_can_pull():
 
 
 def test_a_coverage_that_cannot_be_followed_is_left_out_and_named(monkeypatch, caplog):
-    usual = _starting_torque.solve_to_end
+    usual = _starting_torque.solve_any_to_end
 
     def solve(scene, backend):
         return (
@@ -108,7 +108,7 @@ def test_a_coverage_that_cannot_be_followed_is_left_out_and_named(monkeypatch, c
             else usual(scene, backend)
         )
 
-    monkeypatch.setattr(_starting_torque, "solve_to_end", solve)
+    monkeypatch.setattr(_starting_torque, "solve_any_to_end", solve)
     failing = (0.5,)
     ds = starting_torque(SCENE, [0.6, 0.5], impacts=1, tolerance=1.0)
     assert "one coverage has no simulated torque: the run of SAM 50 %" in caplog.text

@@ -63,7 +63,7 @@ def failing(monkeypatch, module, name, fails):
 
 def test_a_run_that_fails_is_left_out_and_named(brackets, monkeypatch, caplog):
     """The first point between the ends fails: the bracket is found all the same, beside it."""
-    failing(monkeypatch, threshold_run, "solve_to_end", lambda scene: scene.coating.sam_fraction == 0.45)
+    failing(monkeypatch, threshold_run, "solve_any_to_end", lambda scene: scene.coating.sam_fraction == 0.45)
     other = gd.studies.sticking_threshold(LOW, between=BETWEEN, exits=5, width=WIDTH)
     assert "one run is left out: the run at 0.45 could not be finished: of a test" in caplog.text
     assert other.attrs["left_out"] == 1
@@ -75,13 +75,13 @@ def test_a_run_that_fails_is_left_out_and_named(brackets, monkeypatch, caplog):
 
 
 def test_a_bracket_whose_inner_runs_all_fail_stays_as_it_is(monkeypatch):
-    failing(monkeypatch, threshold_run, "solve_to_end", lambda scene: 0.4 < scene.coating.sam_fraction < 0.6)
+    failing(monkeypatch, threshold_run, "solve_any_to_end", lambda scene: 0.4 < scene.coating.sam_fraction < 0.6)
     bracket = gd.studies.sticking_threshold(LOW, between=BETWEEN, exits=5, width=0.01).sel(exits=5)
     assert (float(bracket.sticks), float(bracket.passes)) == BETWEEN
 
 
 def test_an_end_that_fails_is_an_error(monkeypatch):
-    failing(monkeypatch, threshold_run, "solve_to_end", lambda scene: scene.coating.sam_fraction == 0.6)
+    failing(monkeypatch, threshold_run, "solve_any_to_end", lambda scene: scene.coating.sam_fraction == 0.6)
     with pytest.raises(gd.SolverError, match=r"the run at 0\.6 could not be finished: of a test"):
         gd.studies.sticking_threshold(LOW, between=BETWEEN, exits=5, width=0.01)
 
