@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tests.reference.train_solution import solved
-from tests.reference.trains import chain
+from tests.reference.trains import chain, tables
 
+import gearidae as gd
 from gearidae.analysis.verdict import outcomes
 from gearidae.analysis.verdict.free_train import FreeTrain, knots_at
 from gearidae.analysis.verdict.headline import headline
@@ -133,3 +134,45 @@ def test_a_train_that_is_pulled_back_runs_back():
     (outcome,) = outcomes(ds)
     assert outcome.verdict == "runs back"
     assert outcome.turned_back == pytest.approx(0.2 * 76 / (2.0 * np.pi), rel=1e-9)
+
+
+def spring(t, angle, speed, p):
+    return -p[0] * (angle - p[1])
+
+
+@pytest.fixture
+def spring_law():
+    gd.register_torque("spring_of_a_train", parameters=("stiffness", "rest"))(spring)
+    yield
+    gd.unregister_torque("spring_of_a_train")
+
+
+def swinging(duration, stiffness, viscous, rest):
+    """Gears of 18, 54 and 18 teeth without damping: a spring on the first, 200 nm ahead of the second, which drags."""
+    teeth = {"input": (18, 4.86e-21), "output": (54, 3.94e-19), "tail": (18, 4.86e-21)}
+    return Scene.from_dict(
+        tables(
+            shafts={name: {"teeth": count, "inertia": inertia} for name, (count, inertia) in teeth.items()},
+            meshes={
+                "first": {"driver": "input", "driven": "output"},
+                "second": {"driver": "output", "driven": "tail"},
+            },
+            drive={"law": {"name": "spring_of_a_train", "stiffness": stiffness, "rest": rest}},
+            load={"shaft": "output", "viscous": viscous},
+            initial={"gear_speed": 0.0, "gap": "200 nm", "mesh_phase": 0.3},
+            run={"duration": duration, "samples": 2001},
+        )
+    ).replace({"mesh.damping": 0.0})
+
+
+def test_a_train_that_turns_round_in_a_well_of_its_drive_does_not_stick(spring_law):
+    """Just after it turns, its pinion passes the backlash, and free gears are ahead of the train for that time."""
+    stiffness, viscous, pitches = 1e-11, 2e-15, 0.24
+    inertia = 3.94e-19 + 2.0 * 9.0 * 4.86e-21
+    decay = viscous / (2.0 * inertia)
+    half = np.pi / np.sqrt(9.0 * stiffness / inertia - decay**2)
+    for halves in (1.02, 1.04, 1.08, 1.5, 2.2, 3.06):
+        ds = gd.simulate(swinging(halves * half, stiffness, viscous, pitches * 2.0 * np.pi / 18))
+        (outcome,) = outcomes(ds)
+        assert outcome.verdict == ("stops" if halves > 2.0 else "irregular"), halves
+        assert ds.gearidae.standstills().verdict.tolist() == ["stops"] * (halves > 2.0), halves

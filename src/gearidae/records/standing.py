@@ -6,9 +6,10 @@ farthest distances of the gear and of free gears from a zero of the gear's speed
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from enum import IntFlag
 from functools import partial
-from typing import Final
+from typing import Final, NamedTuple
 
 from gearidae.records.quantity import PITCHES, SECONDS, TORQUE, Quantity, count
 
@@ -122,6 +123,45 @@ def stands(advance: float, free_advance: float, lasts: float, until: float, toge
     """
     held = free_advance == 0.0 or advance < 0.5 * free_advance or together
     return held and (free_advance >= NOTICED or lasts > SHARE * until)
+
+
+class Followed(NamedTuple):
+    """What gear and free gears have done from an earlier zero of the gear's speed until now.
+
+    Attributes
+    ----------
+    advance, free_advance : float
+        Farthest distances [pitches].
+    onset : float
+        When free gears began to move [s].
+    """
+
+    advance: float
+    free_advance: float
+    onset: float
+
+
+def turns_round(since: float, until: float, free_advance: float, earlier: Iterable[Followed]) -> bool:
+    """Whether a gear that stands from a zero of its speed only turns round there.
+
+    It has followed free gears from an earlier zero, for longer than since. Until the pinion has passed the
+    backlash, free gears that swing back are ahead of it by a small part of a pitch.
+
+    Parameters
+    ----------
+    since, until : float
+        The zero and the present time [s].
+    free_advance : float
+        Of free gears from the zero [pitches].
+    earlier : iterable of Followed
+        Earlier zeros from which the gear has stayed within half a pitch.
+    """
+    if not 0.0 < free_advance < NOTICED:
+        return False
+    return any(
+        before.advance >= 0.5 * before.free_advance >= 0.5 * NOTICED and until - since < since - before.onset
+        for before in earlier
+    )
 
 
 def is_driven(free_advance: float, driven_time: float, until: float, settled: int) -> bool:

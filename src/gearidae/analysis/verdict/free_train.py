@@ -143,6 +143,10 @@ class FreeTrain:
             where[times >= now] = at
         return where
 
+    def onset(self, begin: float, angle: float, end: float) -> float:
+        """Time at which a train begins to move that is at rest at a time and an angle, or the end."""
+        return begin if self._let_go(begin, angle) != 0.0 else self._waits(begin, end, angle)
+
     def _let_go(self, t: float, angle: float) -> float:
         """Direction in which the torques move a train at rest; 0 if dry resistance holds it."""
         torque = self.driving(t, angle, 0.0)

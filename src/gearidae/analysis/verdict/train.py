@@ -10,7 +10,7 @@ import math
 from array import array
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from gearidae.analysis.verdict.free_train import FreeTrain
 from gearidae.archive.train.work import MESH_LOSSES
 from gearidae.arrays import Floats
 from gearidae.records import RUN_PARTS, EventKind, Extremes
-from gearidae.records.standing import HALF_PITCH, SETTLED_WITHIN, Holding, stands
+from gearidae.records.standing import HALF_PITCH, SETTLED_WITHIN, Followed, Holding, stands, turns_round
 from gearidae.records.train_results import NO_TRACK
 from gearidae.scene.judged import judged_mesh, judged_pitch, judged_shaft
 
@@ -179,6 +179,7 @@ def _standstills(motion: _Motion, free: FreeTrain) -> Iterator[_Standstill]:
     after a new farthest position.
     """
     until, low, high = -math.inf, math.inf, -math.inf
+    earlier: list[float] = []
     for zero in motion.zeros():
         place = motion.at(zero)
         if zero < until or low < place < high:
@@ -189,8 +190,9 @@ def _standstills(motion: _Motion, free: FreeTrain) -> Iterator[_Standstill]:
         lasts = left.size == 0
         inside = inside if lasts else inside[: left[0]]
         end = motion.end if lasts else float(motion.time[inside[-1]]) if inside.size else zero
-        still = _judged(motion, free, zero, end, inside)
+        still = _judged(motion, free, earlier, zero, end)
         if still is None:
+            earlier.append(zero)
             low, high = min(low, place), max(high, place)
             continue
         if not lasts:
@@ -200,18 +202,19 @@ def _standstills(motion: _Motion, free: FreeTrain) -> Iterator[_Standstill]:
         until, low, high = end, math.inf, -math.inf
 
 
-def _judged(motion: _Motion, free: FreeTrain, zero: float, end: float, inside: Any) -> _Standstill | None:
+def _judged(
+    motion: _Motion, free: FreeTrain, earlier: list[float], zero: float, end: float
+) -> _Standstill | None:
     """Judge the time from a zero to an end, in which the shaft has stayed within half a pitch; None if it moves."""
     place = motion.at(zero)
-    times = np.union1d(motion.time[inside], [end])
-    away = np.abs(np.interp(times, motion.time, motion.angle) - place) / motion.pitch
+    times, away, drifted = _ways(motion, free, zero, end)
     advance = float(away.max())
-    # of a run that goes on the torques before its start are not known
-    drifted = np.abs(free.positions(max(zero, motion.begin), place, times) - place) / motion.pitch
     ahead, half = float(drifted.max()), times <= 0.5 * (zero + end)
     calm = 0.0 < ahead <= SETTLED_WITHIN and half.any() and ahead <= float(drifted[half].max())
     together = bool(calm and advance <= float(away[half].max()))
     if not stands(advance, ahead, end - zero, end, together):
+        return None
+    if not together and turns_round(zero, end, ahead, _followed(motion, free, earlier, end)):
         return None
     looks = np.linspace(zero, end, _LOOKS)
     beyond = np.array([abs(free.driving(t, place, 0.0)) - free.dry(t, place, 0.0) for t in looks])
@@ -227,6 +230,25 @@ def _judged(motion: _Motion, free: FreeTrain, zero: float, end: float, inside: A
         rest_time=rest,
         settled=int(calm) + int(together),
     )
+
+
+def _ways(motion: _Motion, free: FreeTrain, zero: float, end: float) -> tuple[Floats, Floats, Floats]:
+    """Times from a zero to an end, and distances from the zero of the shaft and of free gears [pitches]."""
+    place = motion.at(zero)
+    times = np.union1d(motion.time[(motion.time >= zero) & (motion.time < end)], [end])
+    away = np.abs(np.interp(times, motion.time, motion.angle) - place) / motion.pitch
+    # of a run that goes on the torques before its start are not known
+    drifted = free.positions(max(zero, motion.begin), place, times)
+    return times, away, np.abs(drifted - place) / motion.pitch
+
+
+def _followed(motion: _Motion, free: FreeTrain, earlier: list[float], end: float) -> Iterator[Followed]:
+    """Yield what shaft and free gears have done from earlier zeros of which it has stayed within half a pitch."""
+    for zero in earlier:
+        _, away, drifted = _ways(motion, free, zero, end)
+        if float(away.max()) < HALF_PITCH:
+            onset = free.onset(max(zero, motion.begin), motion.at(zero), end)
+            yield Followed(float(away.max()), float(drifted.max()), onset)
 
 
 def _back(motion: _Motion, free: FreeTrain) -> dict[str, float]:

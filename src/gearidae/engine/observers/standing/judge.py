@@ -7,6 +7,7 @@ free gears decide whether there were any.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -17,7 +18,15 @@ from gearidae.engine.observers.standing.follow import NEAR
 from gearidae.engine.observers.standing.free_gears import FreeGears, FreeWay, Zero
 from gearidae.engine.observers.standing.torques import hardest_in, slowest_period_at
 from gearidae.laws.shaft.schedule import segment_ends
-from gearidae.records.standing import GROWS, NOTICED, SETTLED_WITHIN, SHARE, stands
+from gearidae.records.standing import (
+    GROWS,
+    NOTICED,
+    SETTLED_WITHIN,
+    SHARE,
+    Followed,
+    stands,
+    turns_round,
+)
 
 STICKS: Final = STOPS.index("sticks")
 STOP_STEPS: Final = 1_000
@@ -352,19 +361,13 @@ class Judge:
         return None
 
     def _swings(self, zeros: list[Zero], z: Zero, free_advance: float, time: float, position: float) -> bool:
-        """Whether a gear that stands from a zero until a time [s] at a position only turns round there.
+        """Whether a gear that stands from a zero until a time [s] at a position only turns round there."""
+        return turns_round(z.time, time, free_advance, self._followed(zeros, z, time, position))
 
-        It has followed free gears from an earlier zero, for longer than since. Until the pinion has passed the
-        backlash, free gears that swing back are ahead of it by a small part of a pitch.
-        """
-        if not 0.0 < free_advance < NOTICED:
-            return False
+    def _followed(self, zeros: list[Zero], z: Zero, time: float, position: float) -> Iterator[Followed]:
         for earlier in zeros[: zeros.index(z)]:
             free = self._free_until(earlier, time)
-            followed = distance(earlier, position) >= 0.5 * free.farthest >= 0.5 * NOTICED
-            if followed and time - z.time < z.time - free.onset:
-                return True
-        return False
+            yield Followed(distance(earlier, position), free.farthest, free.onset)
 
     def _stood_until(self, seen: Seen, z: Zero, limit: float, length: float) -> tuple[float, float, float]:
         """When the conditions of standing from a zero held last before a time [s]; 0 if they did not.
