@@ -16,7 +16,7 @@ from gearidae.scene import Scene
 
 DRAWN = {
     *("cycle", "gap", "gear_speed", "orders", "overview", "power_spectrum", "spectrogram"),
-    *("impact_spectrum", "transmission_error", "work"),
+    *("impact_spectrum", "train", "transmission_error", "work"),
 }
 NOT_OF_TRAINS = {"contact_torque", "impact_forces", "teeth", "tooth_errors"}
 NO_PICTURES = {"style", "write"}
@@ -28,7 +28,9 @@ def run():
 
 
 @pytest.mark.filterwarnings("ignore:sampling at")
-@pytest.mark.parametrize("name", sorted({*gd.plot.__all__} - NO_PICTURES - {"animate_teeth"}))
+@pytest.mark.parametrize(
+    "name", sorted({*gd.plot.__all__} - NO_PICTURES - {"animate_teeth", "animate_train"})
+)
 def test_every_picture_draws_a_train_or_says_why_not(run, name):
     if name in DRAWN:
         assert getattr(gd.plot, name)(run) is not None

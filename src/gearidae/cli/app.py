@@ -143,10 +143,11 @@ def plot(
     ] = None,
     time: Annotated[
         str | None,
-        Parameter(help="Time at which to draw the teeth, such as 12.5 ms. Default: the last sample."),
+        Parameter(help="Time of the picture teeth or train, such as 12.5 ms. Default: the last sample."),
     ] = None,
     start: Annotated[
-        str | None, Parameter(name="--from", help="Draw a moving picture of the teeth, from this time.")
+        str | None,
+        Parameter(name="--from", help="Draw a moving picture of the teeth or the train, from this time."),
     ] = None,
     stop: Annotated[str | None, Parameter(name="--to", help="End time of the moving picture.")] = None,
     frames: Annotated[
@@ -165,8 +166,8 @@ def plot(
 ) -> int:
     """Draw an archive: speed and contact torque of gears, force and gap of a roller, or any other picture.
 
-    The picture teeth shows the teeth in mesh at one time. If the output ends in .gif, .webp or .mp4, it is a moving
-    picture.
+    The picture teeth shows the teeth in mesh at one time, the picture train a whole train. If the output ends in .gif,
+    .webp or .mp4, it is a moving picture.
     """
     from gearidae.cli.pictures import draw
 

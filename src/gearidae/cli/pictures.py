@@ -21,7 +21,9 @@ from gearidae.scene.group import did_you_mean
 from gearidae.scene.pairs import quantity
 from gearidae.studies.products import open_product
 
-_NO_PICTURES = ("animate_teeth", "style", "tooth_outline", "write")
+_NO_PICTURES = ("animate_teeth", "animate_train", "style", "tooth_outline", "write")
+_MOVING = {"teeth": "animate_teeth", "train": "animate_train"}
+"""Pictures of one time, and what draws them as time goes on."""
 _INCH = 0.0254
 _DPI_OF_FRAMES = 100.0
 
@@ -60,7 +62,7 @@ def draw(
     select : sequence of str
         ``dimension=value``: which run of a sweep.
     time : str or None
-        When to draw the teeth, in seconds or with a unit.
+        When to draw the teeth or the train, in seconds or with a unit.
     span : tuple of str or None
         First and last time of a moving picture.
     frames : int or None
@@ -93,8 +95,8 @@ def draw(
     asked: dict[str, object] = {"--time": time, "--from": span[0], "--to": span[1], "--frames": frames}
     asked["--output"] = output if output is not None and _is_moving(output) else None
     options = {option: str(value) for option, value in asked.items() if value is not None}
-    if options and picture != "teeth":
-        raise SceneError(*next(iter(options.items())), "needs --picture teeth")
+    if options and picture not in _MOVING:
+        raise SceneError(*next(iter(options.items())), "needs --picture teeth or --picture train")
     if dpi is not None and not 10.0 <= dpi <= 2400.0:
         raise SceneError("--dpi", dpi, "must lie in 10..2400")
     if style is not None:
@@ -112,7 +114,7 @@ def draw(
                 "--time", time, "is for a single picture; a moving picture needs --from and --to"
             )
         start, stop = span
-        target = gd.plot.animate_teeth(
+        target = getattr(gd.plot, _MOVING[str(picture)])(
             ds,
             output or default_output(str(archive), ".gif"),
             start=0.0 if start is None else quantity("--from", start, "s"),

@@ -197,6 +197,12 @@ def scale_for(largest: float, unit: str) -> Scale:
     return Scale(10.0**-power, f"{prefix}{unit}")
 
 
+def quantity_text(value: float, unit: str, digits: int = 4) -> str:
+    """Write a value [SI] with the prefix that `scale_for` chooses."""
+    scale = scale_for(abs(value), unit)
+    return f"{value * scale.factor:.{digits}g} {scale.unit}"
+
+
 def scaled(largest: float, unit: str) -> Scale:
     """Choose a prefix as `scale_for` does, for units that take one; others stay as they are.
 

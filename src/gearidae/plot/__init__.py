@@ -33,11 +33,13 @@ from gearidae.plot.spectra import spectrogram as spectrogram
 from gearidae.plot.surface import surface as surface
 from gearidae.plot.tooth_shape import tooth_outline as tooth_outline
 from gearidae.plot.torque import contact_torque as contact_torque
+from gearidae.plot.train_view import train as train
 from gearidae.plot.work import work as work
 from gearidae.studies.declared import studies
 
 if TYPE_CHECKING:
     from gearidae.plot.animation import animate_teeth as animate_teeth
+    from gearidae.plot.animation import animate_train as animate_train
     from gearidae.plot.errors_of_teeth import tooth_errors as tooth_errors
     from gearidae.plot.teeth_view import teeth as teeth
 

@@ -14,8 +14,9 @@ from numpy.typing import ArrayLike
 
 from gearidae.archive.select import run_scene
 from gearidae.drawing.picture import new_picture
-from gearidae.drawing.style import NEGATIVE, POSITIVE, runs_of, scale_for, tidy
+from gearidae.drawing.style import NEGATIVE, POSITIVE, quantity_text, scale_for
 from gearidae.plot.asperities import COATING, FLANKS, close_up, joined_asperities
+from gearidae.plot.speed_strip import speed_strip
 from gearidae.plot.tooth_shape import GearPicture, contact_points, tooth_outline
 from gearidae.records import Flank
 from gearidae.records.tooth_states import ContactState, MeshState, ToothContact
@@ -156,7 +157,9 @@ class TeethView:
         self._close = [
             self.figure.add_axes((0.085 + k * width, 0.245, width - 0.1, 0.145)) for k in range(self._places)
         ]
-        self._time_factor, self._cursor = _speed_strip(self.figure.add_axes((0.085, 0.055, 0.9, 0.08)), ds)
+        self._time_factor, self._cursor = speed_strip(
+            self.figure.add_axes((0.085, 0.055, 0.9, 0.08)), ds, "gear"
+        )
         self._legend()
 
     def draw(self, state: MeshState) -> None:
@@ -306,7 +309,7 @@ def _caption(ax: Axes, contact: ToothContact, factor: float, joined: float, *, n
     parted = ",\n" if narrow else ", "
     lines = [
         f"Pair {contact.pair}, {flank} flank",
-        parted.join([f"gap {_quantity(contact.gap, 'm')}", _force(contact)]),
+        parted.join([f"gap {quantity_text(contact.gap, 'm')}", _force(contact)]),
         *([] if math.isnan(joined) else [f"{_joined_words(contact)} {joined:.2g}"]),
         parted.join(_states(contact)),
     ]
@@ -328,7 +331,7 @@ def _joined_words(contact: ToothContact) -> str:
 def _force(contact: ToothContact) -> str:
     if contact.force == 0.0:
         return "no force"
-    return f"{'pushes' if contact.force > 0.0 else 'pulls'} with {_quantity(abs(contact.force), 'N')}"
+    return f"{'pushes' if contact.force > 0.0 else 'pulls'} with {quantity_text(abs(contact.force), 'N')}"
 
 
 def _states(contact: ToothContact) -> list[str]:
@@ -341,30 +344,11 @@ def _states(contact: ToothContact) -> list[str]:
 
 def _headline(state: MeshState) -> str:
     return (
-        f"t = {_quantity(state.time, 's', 6)}    gear {state.gear_speed:.4g} rad/s    "
-        f"force of all pairs {_quantity(state.mesh_force, 'N')}"
+        f"t = {quantity_text(state.time, 's', 6)}    gear {state.gear_speed:.4g} rad/s    "
+        f"force of all pairs {quantity_text(state.mesh_force, 'N')}"
     )
-
-
-def _quantity(value: float, unit: str, digits: int = 4) -> str:
-    scale = scale_for(abs(value), unit)
-    return f"{value * scale.factor:.{digits}g} {scale.unit}"
 
 
 def _round(factor: float) -> str:
     """Two digits."""
     return f"{float(f'{factor:.2g}'):g}"
-
-
-def _speed_strip(ax: Axes, ds: xr.Dataset) -> tuple[float, Line2D]:
-    """Draw the gear's speed over the whole run with a mark for the time."""
-    (run,) = runs_of(ds, "gear_speed")
-    at, values = run.trace("gear_speed")
-    scale = scale_for(float(at[-1]), "s")
-    ax.plot(at * scale.factor, values, color="0.35", linewidth=0.8)
-    tidy(ax)
-    ax.set_xlabel(f"time ({scale.unit})", fontsize="small", labelpad=1)
-    ax.set_ylabel("gear (rad/s)", fontsize="small")
-    ax.yaxis.set_label_coords(-0.065, 0.5)
-    ax.tick_params(labelsize="x-small")
-    return scale.factor, ax.axvline(0.0, color=NEGATIVE, linewidth=1.4)

@@ -184,21 +184,48 @@ def tooth_outline(scene: Scene, *, gaps: float = 1.0, most_play: float = math.in
     doi:10.1016/j.triboint.2008.05.019).
     """
     scene = require_gears(scene)
-    geometry = scene.geometry
-    backlash = min(gaps * scene.mesh.backlash, most_play * geometry.base_pitch)
+    sizes = scene.mesh.backlash, scene.mesh.tip_relief_radius, scene.surface.roughness
+    return gear_picture(scene.geometry, sizes, errors_of_teeth(scene), gaps=gaps, most_play=most_play)
+
+
+def gear_picture(
+    geometry: Geometry,
+    sizes: tuple[float, float, float],
+    errors: tuple[Floats, Floats] | None = None,
+    *,
+    gaps: float = 1.0,
+    most_play: float = math.inf,
+    of_gear: float = 0.0,
+) -> GearPicture:
+    """Lay out two gears in mesh, as `tooth_outline` does.
+
+    Parameters
+    ----------
+    sizes : tuple of float
+        Backlash, radius of the tooth ends and roughness [m].
+    errors : tuple of ndarray, optional
+        Of the teeth of both gears [m].
+    of_gear : float, optional
+        Share of the backlash that is taken from the gear's teeth, the rest from the pinion's.
+    """
+    play, relief, roughness = sizes
+    backlash = min(gaps * play, most_play * geometry.base_pitch)
     if not 0.0 <= backlash < 0.5 * geometry.base_pitch or not gaps > 0.0:
-        most = 0.5 * geometry.base_pitch / scene.mesh.backlash if scene.mesh.backlash else math.inf
+        most = 0.5 * geometry.base_pitch / play if play else math.inf
         raise SceneError(
             "gaps", gaps, f"must be positive and less than {most:.3g}, which leaves the pinion no teeth"
         )
-    rounding = scene.mesh.tip_relief_radius, _ROUNDED * scene.surface.roughness
+    rounding = relief, _ROUNDED * roughness
     half_pitch = 0.5 * geometry.base_pitch
-    pinion, gear = (gaps * errors for errors in errors_of_teeth(scene))
+    alike = np.zeros(geometry.pinion_teeth), np.zeros(geometry.gear_teeth)
+    pinion, gear = (gaps * error for error in errors or alike)
     return GearPicture(
         geometry=geometry,
-        pinion=_wheel(geometry, pinion, geometry.recess, half_pitch - backlash, rounding, 1),
-        gear=_wheel(geometry, gear, geometry.approach, half_pitch, rounding, -1),
-        half_backlash=0.5 * gaps * scene.mesh.backlash,
+        pinion=_wheel(
+            geometry, pinion, geometry.recess, half_pitch - (1.0 - of_gear) * backlash, rounding, 1
+        ),
+        gear=_wheel(geometry, gear, geometry.approach, half_pitch - of_gear * backlash, rounding, -1),
+        half_backlash=0.5 * gaps * play,
         gaps=gaps,
         play=backlash,
     )
