@@ -1,7 +1,8 @@
 """A train in plain SI numbers: the readable force law of smooth tips, DOP853, nothing compiled, nothing of the engine.
 
-The slow twin of an engine for trains. Asperities have no memory (Hertz), loads are dry and turn all the time, so that
-nothing has to be remembered and no shaft is held: friction of a hub is that of a shaft that slips.
+The slow twin of an engine for trains. Asperities have no memory (Hertz) or are pressed for the first time, loads are
+dry and turn all the time, so that nothing has to be remembered and no shaft is held: friction of a hub is that of a
+shaft that slips.
 """
 
 import math
@@ -32,8 +33,10 @@ class SlowMesh:
             mesh.geometry.base_pitch,
         )
         gaps = np.linspace(DEEPEST, REACH, 4001) * self.sigma
+        force = contact.force(gaps)
         # of a rigid body the force goes with the root of the radius; its logarithm is smooth
-        self.law = CubicSpline(gaps, np.log(contact.force(gaps)))
+        pushes = CubicSpline(gaps, np.log(force)) if (force > 0.0).all() else None
+        self.law = CubicSpline(gaps, force) if pushes is None else lambda deep: np.exp(pushes(deep))
         self.radius = contact.radius
 
     def flank(self, gap, places):
@@ -44,7 +47,7 @@ class SlowMesh:
             return np.zeros(2)
         deep = np.maximum(gap + away[near], DEEPEST * self.sigma)  # a step that is tried and refused
         radii = curvature_radii(self.geometry, places[near])[2]
-        force = np.exp(self.law(deep)) * np.sqrt(radii / self.radius)
+        force = self.law(deep) * np.sqrt(radii / self.radius)
         return np.array([force.sum(), force @ slope[near]])
 
     def forces(self, error, turned):
