@@ -52,7 +52,9 @@ def assert_sound(scene, solution, features):
             np.testing.assert_allclose(apart, error - error[0], rtol=0.0, atol=1e-16)
     assert samples["hub_load"].min() >= 0.0
     assert (samples["shaft_speed"] <= solution.shaft_totals["max_speed"][:, None] * (1.0 + 1e-9)).all()
-    assert (samples["mesh_force"] <= solution.mesh_totals["largest_mesh_force"][:, None] * (1.0 + 1e-9)).all()
+    # extremes of forces are those of cubics between the steps, which follow the samples' to some 1e-6
+    largest = solution.mesh_totals["largest_mesh_force"][:, None]
+    assert (samples["mesh_force"] <= largest + 1e-5 * np.abs(samples["mesh_force"]).max()).all()
 
 
 @pytest.mark.parametrize("feature", CHANGES)
