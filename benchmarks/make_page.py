@@ -3,7 +3,8 @@
 Runs the whole benchmark (some fifty minutes), writes ``benchmarks/results/``, replaces the tables between the markers
 of ``docs/benchmarks.md`` and the pictures ``docs/images/work_precision_*.png``. ``--quick`` measures little, to see
 that it works; ``--tables`` only writes the page again from the last results. A part alone: ``--long`` lets a million
-teeth pass (some minutes), ``--start-stop`` measures start-ups and brakings (half an hour).
+teeth pass (some minutes), ``--start-stop`` measures start-ups and brakings (half an hour), ``--trains`` trains of
+several meshes (a minute).
 """
 
 from __future__ import annotations
@@ -16,10 +17,13 @@ from gearidae_bench.files import write_result
 from gearidae_bench.long import long_page, measure_long
 from gearidae_bench.start_stop import StartStop, measure_start_stop, start_stop_scenes
 from gearidae_bench.start_stop_table import start_stop_page
+from gearidae_bench.train_cost import cost_table, measure_trains
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "benchmarks.md"
 RESULTS = ROOT / "benchmarks" / "results"
+ROUNDS = 21
+"""Of trains and a pair, in turn."""
 
 
 def main(arguments: list[str]) -> None:
@@ -28,6 +32,9 @@ def main(arguments: list[str]) -> None:
         parts = measure_long(report=lambda passed: sys.stderr.write(f"\r{passed} passages"))
         (RESULTS / "long.md").write_text(long_page(parts))
         _insert("long", RESULTS / "long.md")
+        return
+    if "--trains" in arguments:
+        _trains()
         return
     if "--start-stop" in arguments:
         _start_stop(measure_start_stop(start_stop_scenes(), report=_say))
@@ -41,12 +48,19 @@ def main(arguments: list[str]) -> None:
         result = run_benchmark(find_scenes(()), settings, beyond=not quick, report=_say)
         if not quick:
             _start_stop(measure_start_stop(start_stop_scenes(), report=_say))
+            _trains()
     write_result(result, RESULTS, PAGE.parent / "images")
     _insert("measured", RESULTS / "benchmark.md")
 
 
 def _say(words: str) -> None:
     sys.stderr.write(f"{words}\n")
+
+
+def _trains() -> None:
+    """Measure what trains cost over a pair, and renew their table."""
+    (RESULTS / "trains.md").write_text(cost_table(measure_trains(ROUNDS)))
+    _insert("trains", RESULTS / "trains.md")
 
 
 def _start_stop(result: StartStop) -> None:

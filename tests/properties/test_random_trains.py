@@ -56,7 +56,7 @@ def assert_hubs_bear_the_teeth(scene, solution):
     meshes, samples = scene.train.meshes, solution.samples
     if any(mesh.mesh.damping > 0.0 or mesh.mesh.film_damping > 0.0 for mesh in meshes):
         return
-    far = np.array([40.0 * mesh.surface.roughness for mesh in meshes])[:, None]
+    far = np.array([15.0 * mesh.surface.roughness for mesh in meshes])[:, None]
     alone = (samples["coast_gap"] > far).all(axis=0)
     load = np.zeros((len(scene.shafts), 2, samples["mesh_force"].shape[1]))
     for force, mesh in zip(samples["mesh_force"], meshes, strict=True):
