@@ -1,12 +1,10 @@
 """
-How is a train of gears laid out?
-=================================
+How does a transmission turn, and where does its work go?
+=========================================================
 
 Three shafts with two meshes, of which the second is worn. Before anything runs, the statics say how the shafts are
 placed, how fast they turn, and how far the model holds for each mesh.
 """
-
-import matplotlib.pyplot as plt
 
 import gearidae as gd
 
@@ -52,19 +50,19 @@ for shaft in train.train.shafts:
     print(f"{shaft.name}: turns at {shaft.sense * shaft.ratio} of the speed of the drive")
 
 # %%
-# The pitch circles, to scale.
-
-figure, ax = plt.subplots(layout="constrained")
-for shaft in train.train.shafts:
-    x, y = (1e6 * part for part in shaft.centre)
-    teeth = train.shafts[shaft.name].teeth
-    ax.add_patch(plt.Circle((x, y), 1e6 * train.mesh.module * teeth / 2, fill=False))
-    ax.annotate(f"{shaft.name}\n{teeth} teeth", (x, y), ha="center", va="center")
-ax.set(xlabel="x (µm)", ylabel="y (µm)", aspect="equal")
-ax.autoscale_view()
-
-# %%
 # What ``gearidae check`` says of each mesh: here how many asperities touch, and how far they are from JKR's limit.
 
 rows = gd.studies.validity(train)
-rows.filter(regex="expected_asperities|tabor", axis=0).filter(["what", "value"])
+print(rows.filter(regex="expected_asperities|tabor", axis=0).filter(["what", "value"]))
+
+# %%
+# The run, and the whole train at its end. An arrow is the load of a hub: that of the idler is the vector sum of two
+# forces.
+
+run = gd.simulate(train)
+gd.plot.train(run)
+
+# %%
+# Where the work of the drive goes.
+
+run.gearidae.work()

@@ -75,7 +75,8 @@ def refuse_train(ds: xr.Dataset) -> None:
             "dataset",
             f"of a train ({ds.sizes['mesh']} meshes)",
             "must be of a pair of gears here: of trains there are speeds, forces of meshes, loads of hubs and works, "
-            "and none of single pairs of teeth; gearidae.simulate(scene.pair(NAME)) runs a stage as a pair",
+            "and none of single pairs of teeth; gearidae.plot.train draws the whole, and "
+            "gearidae.simulate(scene.pair(NAME)) runs a stage as a pair",
         )
 
 

@@ -33,7 +33,10 @@ def usual_pictures(ds: xr.Dataset, kind: str) -> dict[str, str]:
         Functions of `gearidae.plot` and their captions, the one that says most first.
     """
     if kind == "runs" and is_train(ds):
-        return {"overview": ""} if swept_dims(ds) else {"work": "Where the work of the drive goes"}
+        if swept_dims(ds):
+            return {"overview": ""}
+        moved = {"train": "The train at the end of the run"} if ds.sizes["time"] else {}
+        return {"work": "Where the work of the drive goes"} | moved
     if kind == "runs":
         sampled = any(name in ds for name in sampled_columns(roller=is_roller(ds)))
         return {"overview" if sampled or not swept_dims(ds) else "outcome": ""}
