@@ -60,7 +60,7 @@ print(rows.filter(regex="expected_asperities|tabor", axis=0).filter(["what", "va
 # forces.
 
 run = gd.simulate(train)
-gd.plot.train(run)
+figure = gd.plot.train(run)
 
 # %%
 # Where the work of the drive goes.
