@@ -130,7 +130,8 @@ def measure_trains(rounds: int, trains: dict[str, Scene] = TRAINS) -> list[Cost]
     counts = [_run(scene)[1:] for scene in trains.values()]  # all is compiled and loaded
     spent = np.empty((rounds, len(titles)))
     for k in range(rounds):
-        for place in np.roll(np.arange(len(titles)), k):
+        for step in range(len(titles)):
+            place = (step + k) % len(titles)
             spent[k, place] = _run(trains[titles[place]])[0]
     costs = []
     for place, (title, (steps, evaluations)) in enumerate(zip(titles, counts, strict=True)):
