@@ -13,7 +13,7 @@ import pytest
 import xarray as xr
 
 import gearidae as gd
-from gearidae.archive import check_target, combine, save, to_dataset
+from gearidae.archive import check_target, combine, definition, save, to_dataset
 from gearidae.archive import netcdf as netcdf_module
 from gearidae.archive import target as target_module
 from gearidae.archive.definition import CHUNK
@@ -35,7 +35,72 @@ def sweep(make_solution):
     return combine(LOW, {"coating.sam_fraction": fractions}, scenes, solutions)
 
 
-@pytest.mark.parametrize("name", ["single", "sweep"])
+@pytest.fixture
+def unlike_others(single):
+    """All that a dataset of gearidae may have: flags, several texts, none, no values, a coordinate of its own."""
+    texts = {
+        "several": ("label", ["\N{GREEK SMALL LETTER ALPHA}", "", "two words"]),
+        "empty": ((), ""),
+        "objects": ("label", np.array(["a", "bc", ""], dtype=object)),
+        "none": ("nothing", np.empty(0, dtype=str)),
+    }
+    numbers = {
+        "flags": ("label", [True, False, True]),
+        "single": ("time", np.zeros(single.sizes["time"], np.float32), {"valid_range": np.array([0.0, 1.0])}),
+        "count": ((), np.int64(7)),
+    }
+    beside = {
+        "own": ((), 2.0),
+        "named": ("label", ["x", "y", "z"]),
+        "label": [1.0, 2.0, 4.0],
+        "apart": ("far", [1]),
+    }
+    return single.assign(texts | numbers).assign_coords(beside)
+
+
+def described(path):
+    """Whatever a file says, but for the order in which."""
+    with netCDF4.Dataset(path) as file:
+        file.set_auto_maskandscale(False)
+        file.set_auto_chartostring(False)
+        variables = {
+            name: (
+                variable.dtype,
+                variable.dimensions,
+                variable.shape,
+                variable.chunking(),
+                variable.filters(),
+                {key: str(variable.getncattr(key)) for key in variable.ncattrs()},
+                np.asarray(variable[...]).tobytes() if variable.dtype is not str else variable.shape,
+            )
+            for name, variable in file.variables.items()
+        }
+        return variables, {key: str(file.getncattr(key)) for key in file.ncattrs()}
+
+
+@pytest.mark.parametrize("name", ["single", "sweep", "unlike_others"])
+def test_a_file_says_what_xarray_would_write(name, request, tmp_path):
+    ds = request.getfixturevalue(name).drop_encoding()
+    definition.write(ds, tmp_path / "ours.nc")
+    ds.to_netcdf(tmp_path / "theirs.nc", engine="netcdf4", encoding=definition._encoding(ds, compress=True))
+    ours, theirs = described(tmp_path / "ours.nc"), described(tmp_path / "theirs.nc")
+    assert ours[0].keys() == theirs[0].keys()
+    for variable, said in ours[0].items():
+        assert (variable, said) == (variable, theirs[0][variable])
+    assert ours[1] == theirs[1]
+
+
+def test_what_others_add_is_written_by_xarray(single, tmp_path):
+    dated = single.assign_coords(written=np.datetime64("2026-01-02T03:04:05"))
+    save(dated, tmp_path / "run.nc")
+    with xr.open_dataset(tmp_path / "run.nc") as read:
+        assert read["written"].values == dated["written"].values
+    listed = single.assign(mesh_force=single["mesh_force"].assign_attrs(flags=[1, 2]))
+    save(listed, tmp_path / "listed.nc")
+    assert gd.open_archive(tmp_path / "listed.nc")["mesh_force"].attrs["flags"].tolist() == [1, 2]
+
+
+@pytest.mark.parametrize("name", ["single", "sweep", "unlike_others"])
 def test_what_is_read_is_what_was_saved(name, request, tmp_path):
     ds = request.getfixturevalue(name)
     save(ds, tmp_path / "run.nc")
@@ -144,11 +209,11 @@ def test_a_failed_write_leaves_the_old_archive_and_no_litter(single, tmp_path, m
     save(single, path)
     before = path.read_bytes()
 
-    def disk_full(self, target, **options):
+    def disk_full(target, mode):
         Path(target).write_bytes(b"half")
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(xr.Dataset, "to_netcdf", disk_full)
+    monkeypatch.setattr(definition, "opened", disk_full)
     with pytest.raises(gd.SceneError, match="No space left on device"):
         save(single, path, overwrite=True)
     assert path.read_bytes() == before

@@ -17,7 +17,7 @@ import pytest
 import xarray as xr
 
 import gearidae as gd
-from gearidae.archive import netcdf_access, save
+from gearidae.archive import definition, netcdf_access, save
 from gearidae.archive.netcdf import CheckedStore
 from gearidae.archive.netcdf_access import LIBRARY, loaded, uninterrupted
 from gearidae.cli import main
@@ -49,7 +49,7 @@ def interrupting(function):
 def test_what_is_saved_is_whole_before_the_interrupt_counts(ds, tmp_path, monkeypatch):
     path = tmp_path / "roller.nc"
     with monkeypatch.context() as patched:
-        patched.setattr(xr.Dataset, "to_netcdf", interrupting(xr.Dataset.to_netcdf))
+        patched.setattr(definition, "opened", interrupting(definition.opened))
         with pytest.raises(KeyboardInterrupt):
             gd.save(ds, path)
     xr.testing.assert_identical(gd.open_archive(path), ds)
@@ -68,7 +68,7 @@ def test_an_interrupt_at_the_end_of_a_run_leaves_its_archive_finished(tmp_path, 
     """While the archive is written, where it once left a lock taken that closing the file waited for."""
     path = tmp_path / "roller.nc"
     with monkeypatch.context() as patched:
-        patched.setattr(xr.Dataset, "to_netcdf", interrupting(xr.Dataset.to_netcdf))
+        patched.setattr(definition, "opened", interrupting(definition.opened))
         with pytest.raises(KeyboardInterrupt):
             gd.simulate(gd.preset("roller_slow"), samples=11, archive=path)
     resumed = gd.simulate(gd.preset("roller_slow"), samples=11, archive=path, resume=True)

@@ -16,7 +16,7 @@ import pytest
 import xarray as xr
 
 import gearidae as gd
-from gearidae.archive import check_target, save, target, to_dataset
+from gearidae.archive import check_target, definition, save, target, to_dataset
 from gearidae.archive.journal import journal_of
 from gearidae.archive.lock import WriterLock, is_locked
 from gearidae.cli import main
@@ -297,11 +297,11 @@ def test_a_study_without_room_for_its_file_says_so(name, tmp_path):
 
 
 def test_a_library_that_calls_a_full_disk_otherwise(single, tmp_path, monkeypatch):
-    def refuse(self, target, **options):
+    def refuse(target, mode):
         Path(target).touch()
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr(xr.Dataset, "to_netcdf", refuse)
+    monkeypatch.setattr(definition, "opened", refuse)
     with pytest.raises(gd.SceneError, match=r"could not be written \(Permission denied\)") as caught:
         save(single, tmp_path / "run.nc")
     assert not isinstance(caught.value, DiskFullError)  # there is room
