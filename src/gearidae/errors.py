@@ -131,7 +131,7 @@ class Interrupted(KeyboardInterrupt):
     Parameters
     ----------
     message : str
-        The progress of the run, and the place of its data.
+        The progress of the run, and the file of its data.
     dataset : xarray.Dataset
         The samples and events recorded so far.
     """

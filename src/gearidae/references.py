@@ -39,7 +39,7 @@ class Reference:
 
     @property
     def source(self) -> str:
-        """Authors and place without the title: ``K. L. Johnson, Journal 1 (1971) 1-2, doi:10.1/2``."""
+        """Authors, journal and pages without the title: ``K. L. Johnson, Journal 1 (1971) 1-2, doi:10.1/2``."""
         return ", ".join(filter(None, (_listed(self.authors), self._place(), self.doi and f"doi:{self.doi}")))
 
     @property

@@ -299,7 +299,7 @@ def _asperities_begin(checkpoint):
     ("change", "expected"),
     [
         (lambda c, k: c.__setitem__(k, c[k] + 1.0), "asperities_sha256"),
-        (lambda c, k: c.__setitem__(k + 4, c[k + 4] + 1.0), "places of asperities in order"),
+        (lambda c, k: c.__setitem__(k + 4, c[k + 4] + 1.0), "indices of asperities in order"),
         (lambda c, k: c.__setitem__(k + 4, 1e300), "a number of them"),
         (lambda c, k: c.__setitem__(k + 4 + int(c[k + 4]), 110_000.0), "those of pairs that are near"),
     ],

@@ -75,7 +75,9 @@ def test_a_run_that_fails_is_left_out_and_named(brackets, monkeypatch, caplog):
 
 
 def test_a_bracket_whose_inner_runs_all_fail_stays_as_it_is(monkeypatch):
-    failing(monkeypatch, threshold_run, "solve_any_to_end", lambda scene: 0.4 < scene.coating.sam_fraction < 0.6)
+    failing(
+        monkeypatch, threshold_run, "solve_any_to_end", lambda scene: 0.4 < scene.coating.sam_fraction < 0.6
+    )
     bracket = gd.studies.sticking_threshold(LOW, between=BETWEEN, exits=5, width=0.01).sel(exits=5)
     assert (float(bracket.sticks), float(bracket.passes)) == BETWEEN
 

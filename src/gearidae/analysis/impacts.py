@@ -3,7 +3,7 @@ r"""Mesh impacts: when a pair of teeth leaves the mesh and its load falls on the
 At every mesh exit the leaving pair separates against its adhesion, and the remaining contact rings.
 Exits follow each other at one tooth pitch of the gear, :math:`2\pi/z_2`, so that a record of the speed shows them even
 without events: turned over the angle :math:`\theta = \int\omega\,\mathrm dt`, the bursts of oscillation form a comb of
-that known spacing, of which only the place is sought.
+that known spacing, of which only the phase is sought.
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ _SMOOTH = 0.01
 """Its speed is judged over this part of a pitch."""
 _SMALLEST_STEP = 1e-6
 _COMB = 200
-"""Places tried for the comb of impacts within one pitch."""
+"""Phases tried for the comb of impacts within one pitch."""
 _REACH = 0.12
-"""The comb compares the oscillation this far before and after each place, in pitches."""
+"""The comb compares the oscillation this far before and after each impact, in pitches."""
 _FAINTEST = 0.03
 """Bursts below this part of the strongest do not count in placing the comb."""
 _CLEARLY = 0.2
@@ -255,9 +255,9 @@ class _Bursts:
         Returns
         -------
         score : float
-            Mean logarithm of the growth at the best place of the first impact.
+            Mean logarithm of the growth at the best angle of the first impact.
         place : float
-            That place [rad].
+            That angle [rad].
         impacts : int
             How many of them are whole.
         """
@@ -270,7 +270,7 @@ class _Bursts:
         )
         faint = _FAINTEST * np.max(after - until, where=whole, initial=0.0) + np.finfo(float).tiny
         growth = np.log((after - until + faint) / (until - before + faint))
-        # a place near the ends of the record has fewer teeth: the mean, not the sum, compares them fairly
+        # an angle near the ends of the record has fewer teeth: the mean, not the sum, compares them fairly
         counts = np.maximum(1, whole.sum(axis=1))
         score = np.where(whole.any(axis=1), np.sum(growth, axis=1, where=whole) / counts, -np.inf)
         best = int(score.argmax())

@@ -37,7 +37,7 @@ _PROMINENCE = math.log(4.0)
 _ABOVE_NOISE = 30.0
 """A peak must be this many times the median of the spectrum: chance passes it once in a thousand million bins."""
 _ROUNDING = 4.0
-"""What counts as noise in any case, in units of the last place of the largest sample."""
+"""What counts as noise in any case, in units of the last digit of the largest sample."""
 _SHORTER = (0.8, 0.6)
 """Shorter windows, in parts of the full one, in which a frequency is measured again for its uncertainty."""
 

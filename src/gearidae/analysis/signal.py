@@ -297,7 +297,7 @@ def _gear_teeth(attrs: Mapping[Any, Any]) -> int | None:
 def _events_of(
     data: xr.Dataset | xr.DataArray, array: xr.DataArray, dims: tuple[str, ...], nothing: Signal
 ) -> Callable[[tuple[int, ...]], Signal]:
-    """Return the source of what the events say of the run at a place among the swept dimensions.
+    """Return the source of what the events say of the run at an index of the swept dimensions.
 
     Parameters
     ----------

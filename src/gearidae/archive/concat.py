@@ -219,7 +219,7 @@ def _axes(parts: Sequence[xr.Dataset], key: str) -> list[Axis]:
 
 
 def _order(axes: Sequence[Axis], scenes: Sequence[Scene]) -> list[int]:
-    """Places of the runs in the order of the whole: the last axis changes fastest."""
+    """Indices of the runs in the order of the whole: the last axis changes fastest."""
     shape = tuple(len(next(iter(axis.values()))) for axis in axes)
     places: dict[int, int] = {}
     for number, scene in enumerate(scenes):
@@ -317,7 +317,7 @@ def _with_numbers(ds: xr.Dataset, parts: Sequence[xr.Dataset], members: Sequence
 
 
 def _with_exposures(ds: xr.Dataset, base: Scene, picked: Sequence[xr.Dataset]) -> xr.Dataset:
-    """Put in what the flanks of each run have been exposed to, if all have the same teeth, places and materials."""
+    """Put in what the flanks of each run have been exposed to, if all have the same teeth, bins and materials."""
     dims, shape = ds["status"].dims, ds["status"].shape
     for name, variable in EXPOSURES.items():
         if {run[name].dims if name in run else () for run in picked} != {variable.dims}:

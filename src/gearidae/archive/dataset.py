@@ -256,7 +256,7 @@ def dimension_names(keys: Sequence[str] | Mapping[str, Any]) -> dict[str, str]:
     last = [key.rpartition(".")[2] for key in keys]
     names = {}
     for key, short in zip(keys, last, strict=True):
-        # A place in a list is no name.
+        # An index in a list is no name.
         taken = last.count(short) > 1 or short in _RESERVED or short.isdecimal()
         whole = key.replace(".", "_")
         whole = f"swept_{whole}" if whole in _RESERVED else whole

@@ -182,9 +182,9 @@ def chunked(
 ) -> dict[str, Any]:
     """How to store a variable: in chunks with a checksum each (Fletcher-32), large ones compressed.
 
-    Bytes are sorted by their place in the number (shuffle), then deflated at the lowest level: counts and flags shrink
-    to a hundredth, samples of motion, whose last digits are noise, to six tenths at 85 MB/s on one core; higher levels
-    win a hundredth. HDF5 has no filter for single numbers and for texts, which are stored plainly.
+    Bytes are sorted by their significance in the number (shuffle), then deflated at the lowest level: counts and flags
+    shrink to a hundredth, samples of motion, whose last digits are noise, to six tenths at 85 MB/s on one core; higher
+    levels win a hundredth. HDF5 has no filter for single numbers and for texts, which are stored plainly.
     """
     if dtype.kind not in "fi" or not nbytes or not shape:
         return {}

@@ -17,11 +17,11 @@ from gearidae.scene.coating_table import fraction_at
 from gearidae.scene.friction import has_flank_friction
 
 FLANKS = ("drive", "coast")
-_POINTS = 64  # in each place, for means over it
+_POINTS = 64  # in each bin, for means over it
 
 
 def flank_areas(scene: GearScene) -> Floats:
-    """Areas of one flank of the pinion that the places stand for.
+    """Areas of one flank of the pinion that the bins along it stand for.
 
     Along the path of contact the contact moves on the involute by ``rho / R1`` of its way, rho being the pinion's
     radius of curvature.
@@ -33,7 +33,7 @@ def flank_areas(scene: GearScene) -> Floats:
 
     Returns
     -------
-    ndarray, shape (places,)
+    ndarray, shape (bins,)
         Square metres.
     """
     geometry = scene.geometry
@@ -44,7 +44,7 @@ def flank_areas(scene: GearScene) -> Floats:
 
 
 def gear_flank_areas(scene: GearScene) -> Floats:
-    """Areas of one flank of the gear that the places stand for: what meets `flank_areas` of the pinion.
+    """Areas of one flank of the gear that the bins along it stand for: what meets `flank_areas` of the pinion.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def gear_flank_areas(scene: GearScene) -> Floats:
 
     Returns
     -------
-    ndarray, shape (places,)
+    ndarray, shape (bins,)
         Square metres.
     """
     geometry = scene.geometry
@@ -62,7 +62,7 @@ def gear_flank_areas(scene: GearScene) -> Floats:
 
 
 def _edges(scene: Scene) -> Floats:
-    """Edges of the places along the path of contact [m]."""
+    """Edges of the bins along the path of contact [m]."""
     geometry = scene.geometry
     return np.linspace(0.0, geometry.contact_ratio * geometry.base_pitch, scene.run.exposures + 1)
 
@@ -106,7 +106,7 @@ def exposure_variables(
     -------
     dict
         Name to dimensions, values and attributes; NaN where a run produced nothing. Empty if the scene asks for none,
-        or the runs do not have the same places.
+        or the runs do not have the same bins.
     """
     places = {
         (member.run.exposures, member.gears and member.gears.pinion_teeth, len(member.materials()))
@@ -150,7 +150,7 @@ def _per_area(scene: GearScene, solution: Solution) -> dict[str, Floats]:
         :, None, None
     ]
     if scene.contact.is_discrete:
-        # each asperity has been counted, in places that its material covers
+        # each asperity has been counted, in bins that its material covers
         shares = _shares_by_place(scene)
         contacts = np.divide(contacts, shares, out=np.zeros_like(contacts), where=shares > 0.0)
     else:
@@ -165,11 +165,11 @@ def _per_area(scene: GearScene, solution: Solution) -> dict[str, Floats]:
 
 
 def _shares_by_place(scene: GearScene) -> Floats:
-    """Share of each material in each place of the pinion's teeth, the mean over the gear's teeth that they meet.
+    """Share of each material in each bin of the pinion's teeth, the mean over the gear's teeth that they meet.
 
     Returns
     -------
-    ndarray, shape (flanks, materials, teeth, places)
+    ndarray, shape (flanks, materials, teeth, bins)
     """
     gears, places = scene.gears, scene.run.exposures
     along = (np.arange(_POINTS * places) + 0.5) / (_POINTS * places)

@@ -76,7 +76,7 @@ class Frame:
     shapes : mapping of str to tuple of int
         Of the arrays.
     begin, end : int
-        Places in the file where it begins and behind it.
+        Offsets in the file at which it begins and behind it.
     """
 
     header: dict[str, Any]
@@ -102,7 +102,7 @@ class Journal:
     head : Frame
         Its first frame.
     end : int
-        Place behind the last frame that `frames` or `append` has met, where the next one goes.
+        Offset behind the last frame that `frames` or `append` has met, where the next one goes.
 
     Raises
     ------

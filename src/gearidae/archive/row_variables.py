@@ -165,7 +165,7 @@ def own_rows(ds: xr.Dataset) -> xr.Dataset:
 
 
 def row_places(ds: xr.Dataset, dims: tuple[str, ...]) -> dict[str, list[Any]]:
-    """Places of each run's rows, found in one pass, by the rows' dimensions.
+    """Indices of each run's rows, found in one pass, by the rows' dimensions.
 
     Those are left out of which labels do not tell the runs apart.
     """

@@ -111,7 +111,7 @@ class TimeIndex(xr.Index):
     def reindex_like(
         self, other: Self, method: Any = None, tolerance: Any = None
     ) -> dict[Hashable, np.ndarray[Any, Any]]:
-        """Find the places of another index's labels; -1 where a label is not there."""
+        """Find the positions of another index's labels; -1 where a label is not there."""
         labels = other.to_pandas_index()
         return {self._name: self.to_pandas_index().get_indexer(labels, method=method, tolerance=tolerance)}
 
@@ -132,15 +132,15 @@ class TimeIndex(xr.Index):
         return float(self._times[place].values)
 
     def _before(self, wanted: float) -> int:
-        """Place of the first label that is not smaller."""
+        """Position of the first label that is not smaller."""
         return bisect_left(range(self._times.size), wanted, key=self._at)
 
     def _after(self, wanted: float) -> int:
-        """Place of the first label that is larger."""
+        """Position of the first label that is larger."""
         return bisect_right(range(self._times.size), wanted, key=self._at)
 
     def _place(self, wanted: float, method: str | None, tolerance: float | None) -> int:
-        """Place of one label."""
+        """Position of one label."""
         if method not in _METHODS:
             raise ValueError(f"method must be one of {', '.join(filter(None, _METHODS))}")
         after = self._before(wanted)

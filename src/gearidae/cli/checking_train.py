@@ -127,7 +127,7 @@ def _hubs(scene: TrainScene, forces: Floats) -> Facts:
 
 
 def _sides(scene: TrainScene) -> Facts:
-    """Remind that a gear in two meshes has the coverage of each, where coverage goes by place."""
+    """Remind that a gear in two meshes has the coverage of each, where coverage changes along the flank."""
     for shaft in scene.train.shafts:
         for gear in shaft.gears:
             met = [mesh for mesh in scene.train.meshes if gear in (mesh.driver, mesh.driven)]

@@ -151,7 +151,7 @@ def _analyse(
 
 
 def _along(case: str | None) -> str:
-    """Name what places count along in a list: in a roller's case from the middle, else from the base circle."""
+    """Name what positions count along in a list: in a roller's case from the middle, else from the base circle."""
     return "arc" if case is None or read_scene(case, []).roller is None else "x"
 
 

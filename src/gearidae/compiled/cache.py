@@ -1,7 +1,7 @@
 """Where compiled code is kept: a folder named after everything that went into it.
 
-Within that folder a function has its place by that in the package, not by the path of its file: environments with the
-same sources and versions share it.
+Within that folder a function has its file by its module in the package, not by the path of its file: environments with
+the same sources and versions share it.
 """
 
 from __future__ import annotations
@@ -154,7 +154,7 @@ class CacheLocator(getattr(caching, "_CacheLocator", object)):  # type: ignore[m
 
     @classmethod
     def from_function(cls, function: Callable[..., Any], file: str) -> CacheLocator | None:
-        """Return the place of a function that is declared here, and of no other."""
+        """Return the locator of a function that is declared here, and of no other."""
         if _declared is None or not Path(file).exists():
             return None
         return cls(function, file, _declared)

@@ -133,7 +133,7 @@ def elastic_line_force(
         Share of the interface that the coating covers, 0 to 1.
     nodes : int, optional
         Nodes on one side of the contact. For silicon teeth 24 bring the force to 1e-7 of its converged value while
-        loading, and to 1e-5 of the loading force at the same gap while unloading, when the place where asperities
+        loading, and to 1e-5 of the loading force at the same gap while unloading, when the position at which asperities
         begin to detach travels across the nodes. A contact close to a fold wants more.
 
     Returns

@@ -29,7 +29,7 @@ class ParameterAxis:
     label : str
         Name and unit.
     words : tuple of str
-        Names of the places where the values are no numbers; else empty.
+        Names of the ticks where the values are no numbers; else empty.
     limit : float, optional
         Largest value that the quantity can have, in the unit of the label.
     factor : float
@@ -63,9 +63,9 @@ def parameter_axis(coordinate: xr.DataArray) -> ParameterAxis:
 
 
 def cell_edges(along: ParameterAxis) -> NDArray[np.float64]:
-    """Edges of the cells about the places of an axis in rising order, shape (n + 1,).
+    """Edges of the cells about the positions on an axis in rising order, shape (n + 1,).
 
-    They are the middles between places, and as far beyond the ends; of a logarithmic axis the geometric ones.
+    They are the middles between positions, and as far beyond the ends; of a logarithmic axis the geometric ones.
     """
     places = np.sort(along.places)
     if is_logarithmic(along):
@@ -74,7 +74,7 @@ def cell_edges(along: ParameterAxis) -> NDArray[np.float64]:
 
 
 def is_logarithmic(along: ParameterAxis) -> bool:
-    """Whether the steps between the places are too uneven for an even axis."""
+    """Whether the steps between the positions are too uneven for an even axis."""
     steps = np.diff(np.sort(along.places))
     if steps.size < 2 or np.min(along.places) <= 0.0 or steps.min() <= 0.0:
         return False

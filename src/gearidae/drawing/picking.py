@@ -21,7 +21,7 @@ def pick(verdicts: Sequence[str], most: int) -> list[int]:
     Returns
     -------
     list of int
-        Numbers of runs in increasing order: the first and the last; then both neighbours of each place where the gear
+        Numbers of runs in increasing order: the first and the last; then both neighbours of each run where the gear
         begins to stick or to turn again; the first irregular run of each row of them; both neighbours of other changes;
         and if there is room, runs in the middle of the widest gaps.
     """

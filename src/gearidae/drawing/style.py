@@ -78,7 +78,7 @@ class Run:
     of : int
         Number of runs that could be drawn; more than those that are, if they are too many.
     number : int
-        Its place among all runs of the dataset, of which the last dimension changes fastest.
+        Its number among all runs of the dataset, of which the last dimension changes fastest.
     """
 
     label: str

@@ -176,7 +176,7 @@ def to_rigid(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
 
 
 def carry_exposures(source: Model, m: Model) -> None:
-    """Take over what the flanks have been exposed to, if the new model keeps as many places; else it begins anew.
+    """Take over what the flanks have been exposed to, if the new model keeps as many bins; else it begins anew.
 
     The work of friction begins with friction, and ends with it.
     """
@@ -189,8 +189,8 @@ def carry_exposures(source: Model, m: Model) -> None:
 def extend_nodes(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
     """Checkpoint from which nodes that reach further go on where those of a contact have been pressed too deep.
 
-    Everything is kept but for the nodes' places: joined heights are carried to the new ones by interpolation along the
-    contact, and deflections are solved for.
+    Everything is kept but for the nodes' positions: joined heights are carried to the new ones by interpolation along
+    the contact, and deflections are solved for.
 
     Parameters
     ----------
@@ -253,7 +253,7 @@ def note_gaps(m: Model, y: Floats) -> None:
 
 
 def _interpolate(source: Model, state: Floats, m: Model, y: Floats) -> None:
-    """Carry deflections, shares and joined heights to the places of other nodes, pair by pair."""
+    """Carry deflections, shares and joined heights to the positions of other nodes, pair by pair."""
     before = {
         (k // int(source.scene.slots), int(source.state.history[k].pair)): k
         for k in range(int(source.scene.histories))
@@ -273,7 +273,7 @@ def _interpolate(source: Model, state: Floats, m: Model, y: Floats) -> None:
 
 
 def _along(source: Model, m: Model, values: Floats, finer: bool) -> Floats:
-    """Carry values from places along the old contact to those along the new one, flat beyond the last."""
+    """Carry values from positions along the old contact to those along the new one, flat beyond the last."""
     # takes a sixth of a second to import, and few runs need it
     from scipy.interpolate import PchipInterpolator
 

@@ -4,7 +4,7 @@ Gears and mesh are the same; drive, load, coating and settings may differ. Time,
 extremes go on. Where nothing but settings of the run differ, all units are the same and every number is kept to the
 last bit. A new torque changes the units of time and force, a new coating what asperities do:
 
-- Joined heights are places on the surface, and stay; asperities beyond the new stretch limit have detached.
+- Joined heights are heights on the surface, and stay; asperities beyond the new stretch limit have detached.
   A material that remembers nothing so far, or has not been there, starts with nothing stretched.
 - What the contacts store with the new materials less what they stored is booked as change of the model. An energy
   balance that the other run has not kept begins here.
@@ -253,7 +253,7 @@ def _same_materials(old: Model, new: Model) -> bool:
 
 
 def _materials(m: Model) -> Floats:
-    """What of the materials contacts depend on, in roughnesses and newtons, and fractions by tooth and place."""
+    """What of the materials contacts depend on, in roughnesses and newtons, and fractions by tooth and position."""
     numbers: list[float] = []
     for record in m.scene.coverage:
         numbers += [

@@ -23,9 +23,9 @@ def bisected(holds: Callable[..., bool]) -> Any:
     Returns
     -------
     callable
-        ``(low, high, halvings, least, *arguments)``, which gives the last place found at which the condition holds and
-        the first at which it does not, after so many halvings or once they are no farther apart than a share `least`
-        of the latter.
+        ``(low, high, halvings, least, *arguments)``, which gives the last argument found at which the condition holds
+        and the first at which it does not, after so many halvings or once they are no farther apart than a share
+        `least` of the latter.
     """
 
     # a closure over a compiled function: numba keeps each on disk by what it closes over
@@ -66,4 +66,4 @@ zero_of_cubic = bisected(_keeps_sign)
 extremum_of_cubic = bisected(_keeps_way)
 """Shares between which its slope loses a sign; arguments likewise."""
 departure_of_cubic = bisected(_stays)
-"""Shares between which it leaves a place by a distance; arguments: place, distance, and those of the cubic."""
+"""Shares between which it leaves a value by a distance; arguments: value, distance, and those of the cubic."""

@@ -11,7 +11,7 @@ from gearidae.laws.law import Key, Loss, Verb
 
 
 class PairForce(NamedTuple):
-    """Force of one pair at one gap, rate and place, scaled, with its slopes.
+    """Force of one pair at one gap, rate and position, scaled, with its slopes.
 
     Attributes
     ----------

@@ -38,7 +38,7 @@ SHAFT_LAWS: Final[tuple[ShaftLaw, ...]] = (
 
 _DRIVING = tuple(law for law in SHAFT_LAWS if law.drives)
 ACTING: Final = tuple(law for law in SHAFT_LAWS if not law.drives)
-"""A shaft says which of these it has: the constant `acts` is the sum of 1, 2, 4.. by their places here."""
+"""A shaft says which of these it has: the constant `acts` is the sum of 1, 2, 4.. by their order here."""
 
 
 def _bit(law: ShaftLaw) -> int:
@@ -87,7 +87,7 @@ switch = in_turn(_acting("switch"))
 
 
 def _writer(law: ShaftLaw) -> Verb:
-    """Verb that writes the torque of a law into a row of samples, where a shaft has it; `value` is the place there."""
+    """Verb that writes the torque of a law into a row of samples, where a shaft has it; `value` is the column there."""
     force, bit = law.force, _bit(law)
 
     @compiled
@@ -104,7 +104,7 @@ def _writer(law: ShaftLaw) -> Verb:
 
 SAMPLED: Final = tuple(law for law in ACTING if law.sample is not None)
 write_samples = in_turn(tuple(_writer(law) for law in SAMPLED))
-"""Write the torques of all sampled laws of a shaft: (m, shaft, t, angle, speed, row, place) -> next place."""
+"""Write the torques of all sampled laws of a shaft: (m, shaft, t, angle, speed, row, column) -> next column."""
 
 
 @compiled(inline=True)

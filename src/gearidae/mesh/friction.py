@@ -226,7 +226,7 @@ def hub_starting_torque(
 def starting_ratio(
     geometry: Geometry, coefficient: float, hub_coefficient: float, hub_radii: tuple[float, float]
 ) -> float:
-    """Torque of the pinion over the resistance of the gear that it overcomes at the worst place of the mesh, from rest.
+    """Torque of the pinion over the resistance of the gear that it overcomes from rest, at the worst position.
 
     Parameters
     ----------
@@ -261,7 +261,7 @@ def _over_pitch(
     *,
     equal_shares: bool,
 ) -> float:
-    """Integrate over the newest pair's place in a base pitch a value of shares, distances and radii of all pairs."""
+    """Integrate over the newest pair's position in a base pitch a value of shares, distances and radii of all pairs."""
     half, share, beyond, radii = _laid_out(geometry, _POINTS, equal_shares=equal_shares)
     return float((half * _WEIGHTS).ravel() @ value(share, beyond, radii))
 
@@ -269,12 +269,12 @@ def _over_pitch(
 def _laid_out(
     geometry: Geometry, nodes: Floats, *, equal_shares: bool
 ) -> tuple[Floats, Floats, Floats, tuple[Floats, Floats]]:
-    """Lay nodes on -1..1 between the places where a pair passes the pitch point or leaves the path.
+    """Lay nodes on -1..1 between the positions at which a pair passes the pitch point or leaves the path.
 
     Returns
     -------
     half : ndarray, shape (pieces, 1)
-        Half the length of each piece of the base pitch [m]: what changes with the place is smooth inside.
+        Half the length of each piece of the base pitch [m]: what changes with the position is smooth inside.
     share, beyond : ndarray, shape (pairs, pieces * nodes)
         Share of the force of each pair, and its distance from the pitch point [m].
     radii : tuple of ndarray, the same shape

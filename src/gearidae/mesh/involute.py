@@ -212,7 +212,7 @@ def flank_arc(geometry: Geometry, xi: ArrayLike) -> Floats:
 
 
 def place_of_arc(geometry: Geometry, arc: ArrayLike) -> Floats:
-    """Position along the path of contact of a place on the pinion's flank: the inverse of `flank_arc`.
+    """Position along the path of contact of a point on the pinion's flank: the inverse of `flank_arc`.
 
     Parameters
     ----------

@@ -60,7 +60,7 @@ begins with its start; above the rise within the interval, so that a start witho
 _FEWEST_LEFT = 3
 """Impacts needed beside one that is left out."""
 _STEPS = 20
-"""Places tried between two impacts."""
+"""Shares of an impact tried between two impacts."""
 _TORQUES = np.linspace(-2.5, 2.5, 11)
 """Torques tried around the likeliest, in standard uncertainties of the speed."""
 
@@ -124,7 +124,7 @@ class Fit:
 
     @property
     def best(self) -> int:
-        """Place of the likeliest fraction."""
+        """Index of the likeliest fraction."""
         return int(self.chi2.argmin())
 
     @property
@@ -292,7 +292,7 @@ def _chi_square_of_gears(deviation: Floats, covariance: Floats, shift: Floats) -
 
 
 def at_places(sequences: Floats, places: Floats, steps: np.ndarray) -> Floats:
-    """Sequences that begin at other places, interpolated between the impacts.
+    """Sequences that begin between the impacts, interpolated between the impacts.
 
     Parameters
     ----------

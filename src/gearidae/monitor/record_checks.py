@@ -35,7 +35,7 @@ _BEYOND = 2.0
 """By how much coatings more worn than the map's ring higher than the map, while the gear still turns."""
 _EVERY = 4
 _STEPS = 10
-"""Every fourth fraction, and ten places between two impacts, are tried as images."""
+"""Every fourth fraction, and ten shares between two impacts, are tried as images."""
 _APART = 0.02
 """An image that means a fraction this near to the interval is no other answer."""
 _LIKELY = 9.0

@@ -51,7 +51,7 @@ def rough_sample(scene: GearScene, pair: int) -> tuple[Floats, Floats, NDArray[n
     Returns
     -------
     x, height : ndarray, shape (n,)
-        Places along the flank and heights over the mean plane [m], less the recess where a monolayer is lost.
+        Positions along the flank and heights over the mean plane [m], less the recess where a monolayer is lost.
     material : ndarray of int, shape (n,)
         Which of `gearidae.scene.MATERIAL_NAMES` each belongs to.
     """
@@ -108,7 +108,7 @@ def joined_asperities(scene: GearScene, contact: ToothContact) -> float:
 
 
 class _Row(NamedTuple):
-    """Asperities of a close-up: places, heights, tip radii and materials, and which are stretched and pressed."""
+    """Asperities of a close-up: positions, heights, tip radii and materials, and which are stretched and pressed."""
 
     x: Floats
     height: Floats

@@ -162,7 +162,7 @@ def power_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
         resolution = float(density.attrs["resolution"])
         frequency, power = density["frequency"].values, density.values
         if wide:
-            frequency, power = banded(frequency[1:], power[1:], resolution)  # 0 has no place on the axis
+            frequency, power = banded(frequency[1:], power[1:], resolution)  # 0 has no position on the axis
         ax.semilogy(
             frequency, power, color=run.colour, linestyle=run.line, linewidth=line_width(0.9), label=run.label
         )
@@ -428,7 +428,7 @@ def _settled(run: Run, share: float) -> xr.Dataset:
 
 
 def _between(run: xr.Dataset, first: int, end: int) -> xr.Dataset:
-    """Pick the speeds from one place to before another, and the events meanwhile; read them, if in a file."""
+    """Pick the speeds from one index to before another, and the events meanwhile; read them, if in a file."""
     first, end = max(first, 0), min(end, run.sizes["time"])
     if first == 0 and end == run.sizes["time"]:
         return run

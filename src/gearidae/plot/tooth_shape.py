@@ -8,7 +8,7 @@ image. A flank is the end of a string that unwinds from the base circle. Beyond 
 rounded: the flank recedes by :math:`d^2 / 2\rho`, as in the model (`gearidae.mesh.separation`).
 
 Both flanks of a gear's tooth are half a pitch apart; the whole backlash is taken from the pinion's teeth, so that a
-pair's place along the line of action is where the gear's flank crosses it.
+pair's position along the line of action is where the gear's flank crosses it.
 """
 
 from __future__ import annotations
@@ -144,7 +144,7 @@ class GearPicture:
         return pinion, beyond / self.geometry.base_radius_gear
 
     def line(self, flank: Flank, place: float) -> Floats:
-        """Point of a flank's line of action, by its place along the path of contact [m]."""
+        """Point of a flank's line of action, by its position along the path of contact [m]."""
         beyond, angle = place - self.geometry.approach, self.geometry.pressure_angle
         across = math.cos(angle) if flank == Flank.DRIVE else -math.cos(angle)
         return np.array([beyond * across, -beyond * math.sin(angle)])
@@ -237,7 +237,7 @@ def contact_points(picture: GearPicture, flank: Flank, place: float, gap: float)
     Parameters
     ----------
     place : float
-        Place xi along the path of contact [m].
+        Position xi along the path of contact [m].
     gap : float
         Gap of the pair [m].
 

@@ -25,8 +25,8 @@ def population(scene: Scene) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        Along ``asperity``, flank by flank and in the order of places: ``tooth`` and ``flank`` (0 drive, 1 coast) of the
-        pinion, ``arc`` from the base circle (of a roller ``x`` from its middle), ``height`` and ``radius`` [m],
+        Along ``asperity``, flank by flank and in the order of positions: ``tooth`` and ``flank`` (0 drive, 1 coast) of
+        the pinion, ``arc`` from the base circle (of a roller ``x`` from its middle), ``height`` and ``radius`` [m],
         coverage number ``q`` (with independent sides ``q2`` of the gear's), and ``coated`` (``gear_coated``): whether
         the monolayer covers it. Where the gear's coverage goes by its teeth, ``gear_coated`` is that of the first tooth
         met. The attribute ``asperities_sha256`` is that of a run.
@@ -38,7 +38,7 @@ def population(scene: Scene) -> xr.Dataset:
 
     Notes
     -----
-    Heights are Gaussian with the surface's roughness and places uniform, ``asperity_density`` in the mean. Numbers
+    Heights are Gaussian with the surface's roughness and positions uniform, ``asperity_density`` in the mean. Numbers
     follow from ``contact.seed``, tooth and flank: coverage and torques may be varied on one surface.
     """
     import xarray as xr

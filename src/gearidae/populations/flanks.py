@@ -1,6 +1,6 @@
 """The asperities of every flank of the pinion (the gear's flanks are smooth), or of a roller.
 
-Every flank is drawn from a generator of its own, and always in the same order: number, places, heights, coverage
+Every flank is drawn from a generator of its own, and always in the same order: number, positions, heights, coverage
 numbers of the pinion's side, of the gear's, radii. So coverage and torques may be varied on one surface.
 """
 
@@ -21,14 +21,14 @@ from gearidae.scene.strip import flank_strip
 
 
 class FlankAsperities(NamedTuple):
-    """The asperities of one flank, in the order of their places.
+    """The asperities of one flank, in the order of their positions.
 
     Attributes
     ----------
     tooth, flank : int
         Tooth of the pinion, and 0 for its drive flank, 1 for its coast flank; both 0 for a roller.
     arc : ndarray, shape (n,)
-        Place: arc from the base circle, or distance from the middle of a roller [m].
+        Position: arc from the base circle, or distance from the middle of a roller [m].
     height : ndarray, shape (n,)
         Above the mean plane [m].
     radius : ndarray, shape (n,)
@@ -47,7 +47,7 @@ class FlankAsperities(NamedTuple):
     q2: Floats
 
     def sorted(self) -> FlankAsperities:
-        """Return the same in the order of places."""
+        """Return the same asperities in the order of positions."""
         order = np.argsort(self.arc, kind="stable")
         return self._replace(**{name: getattr(self, name)[order] for name in self._fields[2:]})
 

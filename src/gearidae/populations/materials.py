@@ -1,4 +1,4 @@
-"""Which material meets at each asperity: its coverage numbers compared with the fractions at its place."""
+"""Which material meets at each asperity: its coverage numbers compared with the fractions at its position."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MATERIAL_OF_SIDES: Final = np.array([[_BARE, _MIXED], [_MIXED, _COATED]])
 
 
 def along_path(scene: Scene, flank: FlankAsperities) -> NDArray[np.float64]:
-    """Return the places of a flank's asperities as shares of the path of contact; 0 of a roller."""
+    """Return the positions of a flank's asperities as shares of the path of contact; 0 of a roller."""
     if scene.gears is None:
         return np.zeros_like(flank.arc)
     geometry = scene.geometry

@@ -24,7 +24,7 @@ class MetFlank(NamedTuple):
     Attributes
     ----------
     arc : ndarray, shape (n,)
-        Places from the base circle [m].
+        Positions from the base circle [m].
     height : ndarray, shape (n,)
         Over the mean plane, less the recess where the monolayer is lost [m].
     radius : ndarray, shape (n,)
@@ -43,7 +43,7 @@ class MetFlank(NamedTuple):
         return MetFlank(self.arc[which], self.height[which], self.radius[which], self.material[which])
 
     def overlaps(self, scene: GearScene, place: float, gap: float) -> Floats:
-        """Overlap of each with the gear's flank [m], where the pair touches at a place on its path with a gap [m]."""
+        """Overlap of each with the gear's flank [m], where the pair touches at a position on its path, at a gap [m]."""
         x = self.arc - contact_arc(scene, place)
         return np.asarray(self.height - gap - x**2 / (2.0 * _radius(scene, place)))
 

@@ -155,7 +155,7 @@ GEAR: Final = places(*GEAR_COLUMNS, *ELASTIC_COLUMNS)
 ROLLER: Final = places(*ROLLER_COLUMNS, *ELASTIC_COLUMNS)
 GEAR_POPULATION: Final = places(*GEAR_COLUMNS, *POPULATION_COLUMNS)
 ROLLER_POPULATION: Final = places(*ROLLER_COLUMNS, *POPULATION_COLUMNS)
-"""Places of the columns in a row of samples: ``row[GEAR.gear_speed]``."""
+"""Indices of the columns in a row of samples: ``row[GEAR.gear_speed]``."""
 
 
 def sampled_columns(

@@ -83,4 +83,4 @@ class Events(Rows):
 
 
 EVENT: Final = places(*Events.columns)
-"""Places of the columns in an event's row: ``row[EVENT.kind]``."""
+"""Indices of the columns in an event's row: ``row[EVENT.kind]``."""

@@ -1,4 +1,4 @@
-"""What the flanks have been exposed to: the sums of a tooth of one flank, rows of a table over the places, by name."""
+"""What the flanks have been exposed to: the sums of a tooth of one flank, rows of a table over the bins, by name."""
 
 from __future__ import annotations
 

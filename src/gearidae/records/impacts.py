@@ -68,4 +68,4 @@ class Impacts(Rows):
 
 
 IMPACT: Final = places(*Impacts.columns)
-"""Places of the columns in an impact's row: ``row[IMPACT.impulse]``."""
+"""Indices of the columns in an impact's row: ``row[IMPACT.impulse]``."""

@@ -58,4 +58,4 @@ class Passages(Rows):
 
 
 PASSAGE: Final = places(*Passages.columns)
-"""Places of the columns in a passage's row: ``row[PASSAGE.impacts]``."""
+"""Indices of the columns in a passage's row: ``row[PASSAGE.impacts]``."""

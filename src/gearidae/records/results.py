@@ -29,7 +29,7 @@ class Block:
     rows : ndarray, shape (n, columns)
         Samples after those of the previous block, SI units.
     events : ndarray, shape (m, columns)
-        Table of `Events`, asperities by their places on their flanks.
+        Table of `Events`, asperities by their indices on their flanks.
     time : float
         Simulated time reached [s].
     checkpoint : ndarray of 8-byte words, optional

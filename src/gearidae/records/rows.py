@@ -97,6 +97,6 @@ FLAG: Final = np.int8
 
 
 def places(*columns: str) -> Any:
-    """Place of each column in a row, by its name."""
+    """Index of each column in a row, by its name."""
     make: Any = namedtuple  # mypy takes names that are written out only
     return make("Places", columns)(*range(len(columns)))

@@ -32,7 +32,7 @@ class ToothContact:
     flank : Flank
         Drive or coast.
     place : float
-        Place xi along the path of contact of that flank [m]; outside it the rounded tooth ends meet.
+        Position xi along the path of contact of that flank [m]; outside it the rounded tooth ends meet.
     radius : float
         Reduced radius of curvature [m].
     gap : float
@@ -41,7 +41,7 @@ class ToothContact:
         Force along the line of action by all laws of the scene [N]; positive pushes apart.
     joined : dict of str to float
         By ``bare``, ``coated`` and ``mixed``, as far as there are such parts: height above which asperities are joined
-        [m]; NaN where the bodies deflect, so that each place along the contact has a height of its own. Empty for a
+        [m]; NaN where the bodies deflect, so that each point along the contact has a height of its own. Empty for a
         population.
     states : dict of str to ContactState
         State of each part.
@@ -74,7 +74,7 @@ class MeshState:
     time : float
         Of the sample [s].
     travel : float
-        R2 phi2 [m], so counted that it is the place of pair 0 along its path of contact.
+        R2 phi2 [m], so counted that it is the position of pair 0 along its path of contact.
     transmission_error : float
         u [m].
     gear_speed : float

@@ -1,4 +1,4 @@
-"""Solution of a run of a train: samples over its shafts and meshes, events with their place, totals of each.
+"""Solution of a run of a train: samples over its shafts and meshes, events with their mesh or shaft, totals of each.
 
 An engine hands it up block by block, in tables; what the columns are is said here, for whoever reads a block.
 """

@@ -196,7 +196,7 @@ def _frames(scene: GearScene, run: xr.Dataset, every: int) -> Floats:
     angle, *columns = (_picked(run[name], every, count) for name in ("gear_angle", *FRAME[1:]))
     geometry = scene.geometry
     travel = (angle * geometry.base_radius_gear + first_travel(run, scene)) / geometry.base_pitch
-    # as many pitches as bring both gears back to where they were: float32 keeps the place of millions of pitches
+    # as many pitches as bring both gears back to where they were: float32 keeps the position of millions of pitches
     return np.stack([travel % math.lcm(geometry.pinion_teeth, geometry.gear_teeth), *columns], axis=1)
 
 

@@ -24,7 +24,7 @@ def ascending(ds: xr.Dataset) -> xr.Dataset:
 
 
 def numbers_ascending(ds: xr.Dataset) -> list[int]:
-    """Place that each run of `ascending` has among the runs of the dataset; the last dimension changes fastest."""
+    """Number that each run of `ascending` has among the runs of the dataset; the last dimension changes fastest."""
     order = _order(ds)
     sizes = [len(places) for places in order.values()]
     numbers = np.arange(math.prod(sizes)).reshape(sizes)

@@ -55,10 +55,10 @@ PAIR = (
     "joined_from",
     "joined_to",
 )
-"""Numbers of a pair: number, `Flank`, place, radius, gap [m], force [N], joined heights [m], a `ContactState` each, how
-many asperities are joined (without a population: on average), which row of asperities is drawn, where the pair touches
-in that row [m], and which of the run's ``joined`` are its own. NaN where there is no such pair or part, and of joined
-heights where the bodies deflect."""
+"""Numbers of a pair: number, `Flank`, position, radius, gap [m], force [N], joined heights [m], a `ContactState` each,
+how many asperities are joined (without a population: on average), which row of asperities is drawn, where the pair
+touches in that row [m], and which of the run's ``joined`` are its own. NaN where there is no such pair or part, and of
+joined heights where the bodies deflect."""
 _TALLEST = 500
 """Asperities of a row that are embedded at most: the tallest."""
 
@@ -150,9 +150,10 @@ class _Asperities:
     ----------
     scene : Scene
     rows : dict of str to int
-        Places along the flank [m], heights [m], tip radii [m] and materials of a row, as base64 text, and its number.
+        Positions along the flank [m], heights [m], tip radii [m] and materials of a row, as base64 text, and its
+        number.
     joined : list of float
-        Places and heights of joined asperities of a population, of all pairs one after the other.
+        Positions and heights of joined asperities of a population, of all pairs one after the other.
     """
 
     def __init__(self, scene: GearScene) -> None:
@@ -169,7 +170,7 @@ class _Asperities:
         return [row, touching_arc(self.scene, contact.place), first, len(self.joined) // 2]
 
     def _read(self, pair: int, flank: Flank) -> tuple[Floats, int]:
-        """Places and heights of the asperities of a pair, shape (n, 2), and the number of the row of its tallest."""
+        """Positions and heights of the asperities of a pair, shape (n, 2), and the number of the row of its tallest."""
         drawn = flank_asperities(self.scene, pair, flank)
         tallest = drawn.some(np.argsort(-drawn.height)[:_TALLEST])
         row = self.rows.setdefault(html.numbers(np.stack(tallest).ravel()), len(self.rows))
@@ -177,9 +178,9 @@ class _Asperities:
 
 
 def _row(asperities: _Asperities, state: MeshState, places: int) -> list[float]:
-    """Return the numbers of a state; each of its pairs in a place of its own."""
+    """Return the numbers of a state; each of its pairs in columns of its own."""
     geometry = asperities.scene.geometry
-    # as many pitches as bring both gears back to where they were: float32 keeps the place of millions of pitches
+    # as many pitches as bring both gears back to where they were: float32 keeps the position of millions of pitches
     turns = math.lcm(geometry.pinion_teeth, geometry.gear_teeth)
     travel = state.travel / geometry.base_pitch % turns
     row = [state.time, travel, state.transmission_error, state.gear_speed, state.mesh_force]

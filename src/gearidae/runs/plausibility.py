@@ -163,7 +163,7 @@ def _inertias(scene: Scene) -> list[str]:
 
 
 def _idle(scene: Scene) -> list[str]:
-    """Name loads, films and attraction that do nothing, without their coefficient or their place."""
+    """Name loads, films and attraction that do nothing, without their coefficient or their flank."""
     lines = []
     if scene.surface.hamaker > 0.0 and not any(
         part.name == "bare" and part.share > 0.0 for part in scene.materials()

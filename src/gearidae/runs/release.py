@@ -36,9 +36,9 @@ if TYPE_CHECKING:
     from gearidae.scene import GearScene
 
 _STEPS = 60
-"""Places along the tip between which the largest pull is looked for."""
+"""Positions along the tip between which the largest pull is looked for."""
 _PLACE_ERROR = 1e-5
-"""Of the place of the largest pull, in distances of these: beside its cusp the pull falls by half over some."""
+"""Of the position of the largest pull, in distances of these: beside its cusp the pull falls by half over some."""
 _REACH = 4.0
 """The tip is followed until it has opened the gap by this many roughnesses more than asperities stretch."""
 
@@ -82,7 +82,7 @@ class LeavingPair:
         )
 
     def balanced(self, beyond: float, near: float, joined: float, force: float) -> tuple[float, float]:
-        """Depth of the gap [m] at a place of the tip, next to a gap where forces nearly balance; the resistance [N]."""
+        """Depth of the gap [m] at a position of the tip, next to a gap where forces nearly balance; resistance [N]."""
         opened = beyond**2 / (2.0 * self._rho)
 
         def balance(gap: float) -> float:
@@ -137,7 +137,7 @@ def largest(
     known: Sequence[Sequence[float]],
     which: int,
 ) -> Sequence[float]:
-    """Find the numbers at the place where one of them is largest, by golden section between the neighbours of a place.
+    """Find the numbers at the position where one of them is largest, by golden section between two neighbours.
 
     Resistance and depth have a cusp where the asperities that were pressed deepest let go, so that no parabola through
     it helps.
@@ -145,9 +145,9 @@ def largest(
     Parameters
     ----------
     at : callable
-        The numbers at a place, given those of a place beside it.
+        The numbers at a position, given those of a position beside it.
     places, known
-        Places in order, and what `at` gives there.
+        Positions in order, and what `at` gives there.
     which : int
         Index of the number that is to be largest.
 

@@ -7,9 +7,9 @@ with :math:`\rho_k` (`gearidae.runs.release`),
 
     R_{kb}\,(F_k - \rho_k) = \sum R_{ja} F_j + h(F_k, F_j),
 
-from the drive to the load. The train turns on if at every place the torque that arrives at the load overcomes what
+from the drive to the load. The train turns on if at every angle the torque that arrives at the load overcomes what
 resists there. Exits of two meshes that coincide add up, each with the ratio of its stage; whether they coincide follows
-from the phases. A place is an angle of the drive's shaft.
+from the phases. Angles are those of the drive's shaft.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ from gearidae.scene import TrainScene
 _MOST_EXITS: Final = 400
 """Largest number of exits of one mesh that are followed: phases of meshes may repeat only after many more."""
 _SAME_PLACE: Final = 1e-6
-"""Difference of two places, in widths of an exit, below which exits of the same meshes are alike."""
+"""Difference of two angles, in widths of an exit, below which exits of the same meshes are alike."""
 
 
 class Resistance(NamedTuple):
-    """Resistance of a train at the place where it needs the largest torque.
+    """Resistance of a train at the angle where it needs the largest torque.
 
     Attributes
     ----------
@@ -137,7 +137,7 @@ class TrainRelease:
                 group.append(window)
 
     def resistance(self, torque: float) -> Resistance:
-        """Follow the exits under a torque of the drive [N m], and return what holds at the worst place."""
+        """Follow the exits under a torque of the drive [N m], and return what holds at the worst angle."""
         count = len(self._pairs)
         still = self._passed(torque, np.zeros(count), lambda _k, _force: 0.0)
         gaps = [pair.settled(force) for pair, force in zip(self._pairs, still.forces, strict=True)]
@@ -201,7 +201,7 @@ class TrainRelease:
         """Hand a torque [N m] on from the drive to the load.
 
         Meshes that do not lead to the load carry what their shafts take, with the resistances `near`, which change
-        little from place to place.
+        little from angle to angle.
         """
         train, arriving, before = self._train, torque, np.zeros(2)
         forces, held = np.zeros(len(self._pairs)), np.zeros(len(self._pairs))

@@ -218,7 +218,7 @@ def _memory(scene: Scene, rest: Rest) -> ValidityRow:
         ]
         width = 4.0 * math.sqrt(
             np.average(squares, weights=_counts(rest))
-        )  # four standard deviations of the places
+        )  # four standard deviations of the positions
         begin = geometry.tangent_pinion - geometry.approach
         rolled = ((begin + geometry.path_length) ** 2 - begin**2) / (2.0 * geometry.base_radius_pinion)
         ratio = width / rolled

@@ -67,7 +67,7 @@ class ListedAsperity(NamedTuple):
 
 
 class ListedAsperities(tuple[ListedAsperity, ...]):
-    """The rows of a list, with the name of what its places are counted along.
+    """The rows of a list, with the name of what its positions are counted along.
 
     Attributes
     ----------

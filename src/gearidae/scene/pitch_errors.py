@@ -1,4 +1,4 @@
-r"""Errors of single teeth: how far each stands back from the place that its gear's other teeth give it.
+r"""Errors of single teeth: how far each stands back from the position that its gear's other teeth give it.
 
 A positive error p is that of a tooth that stands back from its drive flank, so that the drive gap of its pairs opens
 and the coast gap closes. Pair i has the gaps
@@ -87,7 +87,7 @@ def _column(path: Path) -> tuple[float, ...]:
 
 
 def _error_column(headings: Sequence[str]) -> int | None:
-    """Place of the column of errors: the only one, or the one of that name."""
+    """Index of the column of errors: the only one, or the one of that name."""
     if len(headings) == 1:
         return 0
     places = [k for k, heading in enumerate(headings) if split_unit(heading.strip())[0] == _NAME]
@@ -148,7 +148,7 @@ def rms_of_sums(scene: GearScene) -> float:
 
 
 def errors_range(scene: GearScene) -> float:
-    """By how much the gaps of two pairs of one flank may differ at one place of the path [m]."""
+    """By how much the gaps of two pairs of one flank may differ at one point of the path [m]."""
     return max(high - low for low, high in extreme_sums(scene)) if has_pitch_errors(scene) else 0.0
 
 

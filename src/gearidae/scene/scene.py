@@ -200,7 +200,7 @@ class Scene(Group):
 
     @property
     def train(self) -> Train:
-        """Shafts and meshes in their places: senses, ratios, centres, phases, loops; of a pair, too.
+        """Shafts and meshes where they stand: senses, ratios, centres, phases, loops; of a pair, too.
 
         Raises
         ------

@@ -156,7 +156,7 @@ def _of_file(table: Mapping[str, Any], units: tuple[str, str]) -> list[Floats]:
 
 
 def _wanted(table: Mapping[str, Any], names: Sequence[str]) -> list[tuple[str, int]]:
-    """Find the columns of time and value: their names, with units, and their places."""
+    """Find the columns of time and value: their names, with units, and their indices."""
     if "time" not in table and "value" not in table and len(names) == 2:
         return [(names[0], 0), (names[1], 1)]
     columns = []

@@ -42,7 +42,7 @@ _SAME_PLACE: Final = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class TrainShaft:
-    """A shaft in its place.
+    """A shaft where it stands.
 
     Attributes
     ----------
@@ -69,7 +69,7 @@ class TrainShaft:
 
 @dataclass(frozen=True, slots=True)
 class TrainMesh:
-    """A mesh in its place, with all of its keys.
+    """A mesh where it stands, with all of its keys.
 
     Attributes
     ----------

@@ -88,8 +88,8 @@ class MeasuredSurface:
         Parameters
         ----------
         along : {"arc", "x"}
-            Name of the places along the columns' index: ``arc`` from the edge of the area that was analysed, for gears,
-            ``x`` from its middle, for a roller.
+            Name of the positions along the columns' index: ``arc`` from the edge of the area that was analysed, for
+            gears, ``x`` from its middle, for a roller.
 
         Returns
         -------

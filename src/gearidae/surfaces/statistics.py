@@ -129,7 +129,7 @@ def asperities(surface: HeightMap, cutoff: float) -> xr.Dataset:
     Returns
     -------
     Dataset, dims (asperity,)
-        ``along`` and ``across``, the places along the columns' and the rows' index from the edge of the area that is
+        ``along`` and ``across``, the positions along the columns' and the rows' index from the edge of the area that is
         analysed, ``height`` above the summits' mean plane and ``radius`` [m], ordered along. The attributes ``length``
         and ``width`` are that area's [m].
     """

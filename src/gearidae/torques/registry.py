@@ -39,7 +39,7 @@ class Parameter:
         Its value where none is given; without one it is required.
     over_time : bool
         Whether it may be a linear schedule, which holds its end values outside its knots. Only the last parameter may
-        be one. The law reads its knots (time, value), from its place to the end of the array; a number is one knot at
+        be one. The law reads its knots (time, value), from its index to the end of the array; a number is one knot at
         time 0.
     description : str
         What it means.

@@ -33,7 +33,7 @@ class VerdictCode(IntEnum):
 
 
 class Outcome(IntEnum):
-    """What a gear does at one place of an operating map."""
+    """What a gear does at one point of an operating map."""
 
     UNFINISHED = -1
     TURNS = 0

@@ -123,7 +123,7 @@ def calibrate(
 
     def likelihood(values: Floats, shown: bool | SweepProgress = False) -> Floats:
         figures = predictor.figures(values, shown)
-        if chosen == "grid":  # a sampler comes to places that it leaves again
+        if chosen == "grid":  # a sampler comes to points that it leaves again
             for place, observation in enumerate(seen):
                 _doubt_observation(observation, figures[:, place])
         parts = [observation.log_likelihood(figures[:, place]) for place, observation in enumerate(seen)]

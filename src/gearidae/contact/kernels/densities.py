@@ -15,12 +15,12 @@ from gearidae.contact.psi import psi_derivatives
 
 
 def kernel_at_knots(kernel: Kernel, knots: Floats) -> Floats:
-    """Density with three derivatives at a few places, each worked out anew, shape (4, n)."""
+    """Density with three derivatives at a few points, each worked out anew, shape (4, n)."""
     return psi_derivatives(knots, 3) if kernel == "line" else _normal_derivatives(knots)
 
 
 def kernel_at(kernel: Kernel, y: Floats) -> Floats:
-    """Density with three derivatives at many places, shape (4, *y.shape)."""
+    """Density with three derivatives at many points, shape (4, *y.shape)."""
     return _psi_at(y) if kernel == "line" else _normal_derivatives(y)
 
 

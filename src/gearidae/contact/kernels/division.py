@@ -75,7 +75,7 @@ class Division(NamedTuple):
 
 @compiled(inline=True)
 def place_of(table: Floats, v: float) -> tuple[float, float]:
-    """Place of v among the pieces of a table, whose whole part is the piece, and one over the length of that."""
+    """Position of v among the pieces of a table, whose whole part is the piece, and one over the length of that."""
     if v < table[H_KINK]:
         return v * table[H_BELOW], table[H_BELOW]
     return place_above(table[H_BEFORE], table[H_PIECES], table[H_ABOVE], v - table[H_KINK])
@@ -83,7 +83,7 @@ def place_of(table: Floats, v: float) -> tuple[float, float]:
 
 @compiled
 def place_above(before: float, pieces: float, above: float, beyond: float) -> tuple[float, float]:
-    """Place of a v among the pieces above the kink, given its distance from that, and one over its piece's length."""
+    """Position of a v among the pieces above the kink, given its distance from it, and one over its piece's length."""
     x = beyond * above
     j = min(math.floor(math.sqrt(x)), pieces - before - 1.0)
     length = 2.0 * j + 1.0

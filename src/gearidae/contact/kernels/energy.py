@@ -204,7 +204,7 @@ def _store_partial(law: Floats, end: Floats, table: Floats) -> None:
 
 @lru_cache(maxsize=8)
 def _stretch_integral(division: Division) -> Floats:
-    """Matrix from a piecewise polynomial f to that of ``v^-2 int_0^v v'^3 f dv'``, both in powers of place."""
+    """Matrix from a piecewise polynomial f to that of ``v^-2 int_0^v v'^3 f dv'``, both in powers of the position."""
     nodes = np.polynomial.chebyshev.chebpts1(DEGREE + 1)
     to_powers = np.linalg.inv(np.vander(nodes, increasing=True))
     x, w = gauss_rule(_GAUSS)

@@ -4,8 +4,8 @@ With joined heights shifted by the distance of joining (see `gearidae.contact.ke
 the displacement ``-join``, and what is stretched beyond lies between ``-join - S`` and ``-join``.
 
 All are integrals of a load times the kernel at a knot plus an offset. Over a panel of offsets the kernel is a
-polynomial to the last digit or two: it is worked out at a few places of the panel, once for all stretches, and the law
-becomes weights at these places.
+polynomial to the last digit or two: it is worked out at a few nodes of the panel, once for all stretches, and the law
+becomes weights at these nodes.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ def loading_derivatives(gap: Floats, law: AsperityLaw, kernel: Kernel) -> Floats
 
 
 def _compressed(law: AsperityLaw, begin: Floats, count: int) -> Floats:
-    """Weights at the places of panels of compression, from a rule of so many nodes, shape (panels, PLACES)."""
+    """Weights at the nodes of panels of compression, from a rule of so many nodes, shape (panels, PLACES)."""
     offset, weight = law.nodes(begin, begin + PANEL, *gauss_rule(count))
     return _at_places((offset - begin[:, None]) / PANEL, weight)
 

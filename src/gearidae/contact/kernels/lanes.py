@@ -1,4 +1,4 @@
-"""Polynomials at one place, and sums over eight numbers, side by side in the processor's wide registers.
+"""Polynomials at one argument, and sums over eight numbers, side by side in the processor's wide registers.
 
 Compilers do not see that the eight coefficients of the second variable in a two-dimensional table are eight polynomials
 of the first, nor that a point between the nodes of an elastic contact has shares of eight of them, so the vector

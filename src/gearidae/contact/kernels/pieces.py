@@ -77,7 +77,7 @@ def partial_pieces(
     Returns
     -------
     ndarray, shape (n, pieces, 8, DEGREE + 1)
-        Powers of u, then of the place in the piece of v.
+        Powers of u, then of the position in the piece of v.
     """
     nodes = np.polynomial.chebyshev.chebpts1(DEGREE + 1)
     to_powers = np.linalg.inv(np.vander(nodes, increasing=True))
@@ -104,7 +104,7 @@ def asperity_pieces(law: AsperityLaw, division: Division) -> Floats:
     Returns
     -------
     ndarray
-        Distance of joining; powers of the place in the piece, -1..1, of the load; those of the work.
+        Distance of joining; powers of the position in the piece, -1..1, of the load; those of the work.
     """
     nodes = np.polynomial.chebyshev.chebpts1(DEGREE + 1)
     to_powers = np.linalg.inv(np.vander(nodes, increasing=True))

@@ -70,7 +70,7 @@ def asperity_table(law: AsperityLaw, highest: float) -> Floats:
 
 @compiled(inline=True)
 def _piece(table: Floats, at: int, displacement: float) -> tuple[float, int, float, float]:
-    """Return w, the piece that it lies in, its place there, -1..1, and the rate of that with w."""
+    """Return w, the piece that it lies in, its position there, -1..1, and the rate of that with w."""
     above = displacement - table[at + A_START]
     below = int(table[at + A_BELOW])
     if above >= 0.0 or below == 0:

@@ -63,7 +63,7 @@ def _all_rows(m: Model) -> Floats:
 
 
 def _kept_columns(m: Model) -> NDArray[np.int64]:
-    """Places of the kept numbers in one history's rows: gap and share of the nodes, joined heights of the points."""
+    """Indices of the kept numbers in one history's rows: gap and share of the nodes, joined heights of the points."""
     n, points = int(m.scene.nodes), int(m.scene.points)
     first = NODE_ROWS * n
     return np.concatenate([np.arange(2 * n), np.arange(first, first + MATERIALS * points)])

@@ -269,7 +269,8 @@ def _loading(table: Floats, gaps: Floats) -> Floats:
 def rigid_limit(scene: Scene, bounds: ContactBounds) -> tuple[float, bool]:
     """Gap down to which the deflection of the bodies is negligible, and whether that suffices.
 
-    Where shares change with tooth and place, each material may be alone somewhere: the one with the widest gap counts.
+    Where shares change with tooth and position, each material may be alone somewhere: the one with the widest gap
+    counts.
 
     Returns
     -------

@@ -59,7 +59,7 @@ def equation_space(m: Model, which: int) -> Floats:
 
 @compiled(makes_arrays=True)
 def influence_space(m: Model) -> Floats:
-    """Place of the influence coefficients, column by column, shape (n, n)."""
+    """Index of the influence coefficients, column by column, shape (n, n)."""
     n = m.scene.nodes
     return equation_space(m, _SLOPES + 2)[: n * n].reshape(n, n)
 

@@ -11,14 +11,14 @@ that of the rigid profiles and the deflection of both bodies under all the press
 lengths in roughnesses, :math:`\ell` the contact length, which changes along the path of contact with the
 radius R. The deflections d are unknowns of the integration beside the motion.
 
-The pressure of a closing contact is smooth. The part of stretched asperities has a kink at their detachment, a place
+The pressure of a closing contact is smooth. The part of stretched asperities has a kink at their detachment, a point
 that travels across the nodes and between them. Deflections stay smooth, so this part is taken at finer points, between
 the nodes by interpolation of the deflections, :math:`h_m = g + s_m^2 + \sum_i A_{mi} d_i`, and carried to the nodes
 by the same matrix, :math:`w_i p_i = \sum_m A_{mi} w_m t_m`: work and force stay as they are, and there is no
 unknown more. Each point remembers its own joined heights.
 
-Where shares of the materials change with tooth and place, those of the pair's place hold for all nodes of its contact,
-as the pair's radius does: a contact is some hundredths of a pitch wide.
+Where shares of the materials change with tooth and position, those at the pair's position hold for all nodes of its
+contact, as the pair's radius does: a contact is some hundredths of a pitch wide.
 
 While a contact is stable every gap along it moves with the pair's, one way or the other together with it, so
 that all of them turn round when the pair does: that instant is found as a root, and the joined heights taken there are
@@ -237,7 +237,7 @@ def _add_material(
 
 @compiled
 def point_branch(m: Model, k: int, material: int, point: int) -> int:
-    """Place of the branch of stretched asperities at a point, among the rows; it knows the joined height it is of."""
+    """Index of the branch of stretched asperities at a point, among the rows; it knows the joined height it is of."""
     place = (k * MATERIALS + material) * m.scene.points + point
     return m.scene.point_branches_at + place * m.scene.point_branch_length
 

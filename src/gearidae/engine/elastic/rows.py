@@ -101,14 +101,14 @@ _profile = compiled(makes_arrays=True)(profile_of)
 
 @compiled
 def joined_at(m: Model, k: int, material: int) -> int:
-    """Place of the joined heights of a pair's points, among the rows."""
+    """Index of the joined heights of a pair's points, among the rows."""
     start = m.scene.node_rows_at + k * m.scene.node_row_length
     return start + NODE_ROWS * m.scene.nodes + material * m.scene.points
 
 
 @compiled
 def first_unknown(m: Model, k: int) -> int:
-    """Place in the state of the first deflection of a history's pair, that of the middle."""
+    """Index in the state of the first deflection of a history's pair, that of the middle."""
     return MOTION + k * m.scene.nodes
 
 

@@ -92,7 +92,7 @@ def init_history(m: Model, k: int, pair: int, gap: float, middle: float) -> None
 
 @compiled(makes_arrays=True)
 def begin(place: int, t: float, y: Floats) -> None:
-    """Set the histories and mesh marks of the model at a place for a start at `y`."""
+    """Set the histories and mesh marks of the model at an address for a start at `y`."""
     m = model_at(place)
     for coast in range(2):
         clear_history(m, coast)

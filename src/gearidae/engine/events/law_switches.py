@@ -29,7 +29,7 @@ _PLACES: Final = (0.0, *sorted(k * 0.5 * (math.sqrt(5.0) - 1.0) % 1.0 for k in r
 """Shares of a step at which the function of a law's switch is evaluated: multiples of the golden section, so that no
 wave has the same phase at all of them."""
 _SECTIONS: Final = 8
-"""Steps of a golden-section search: they narrow a dip between three of these places to a fiftieth."""
+"""Steps of a golden-section search: they narrow a dip between three of these times to a fiftieth."""
 _GOLDEN: Final = 0.5 * (3.0 - math.sqrt(5.0))
 
 
@@ -149,7 +149,8 @@ def _returns(
 ) -> bool:
     """Whether the function of a law's switch has another sign within a step than at both ends.
 
-    About a place where the function is nearer to zero than at both neighbours, a golden-section search follows it down.
+    About a time at which the function is nearer to zero than at both neighbours, a golden-section search follows it
+    down.
     """
     if m.work.law_side[shaft] == 0.0:
         return False
@@ -177,7 +178,7 @@ def _dips(
     first: tuple[float, float],
     last: tuple[float, float],
 ) -> bool:
-    """Whether the function is beyond zero about the middle one of three places, where its distance is the least."""
+    """Whether the function is beyond zero about the middle one of three times, where its distance is the least."""
     low, middle, high = places
     for _ in range(_SECTIONS):
         further = high - middle > middle - low

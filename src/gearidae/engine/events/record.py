@@ -71,7 +71,7 @@ def record_contact(
 def record_asperity(
     m: Model, events: Floats, count: int, what: tuple[float, float, int, int, float], asperity: float
 ) -> int:
-    """Write an event of a single asperity, given by its place among those of its flank, likewise."""
+    """Write an event of a single asperity, given by its index among those of its flank."""
     t, kind, pair, flank, rate = what
     after = record(m, events, count, t, kind, pair, flank, rate)
     if after > count:

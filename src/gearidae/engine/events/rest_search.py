@@ -37,7 +37,7 @@ LOOKS: Final = 10_000
 FEW_PERIODS: Final = 4.0
 """Periods that are looked at one after the other."""
 REFINEMENTS: Final = 45
-"""Golden sections of a minimum: then its place is known to 1e-9 of the time between two looks."""
+"""Golden sections of a minimum: then its time is known to 1e-9 of the time between two looks."""
 HALVINGS: Final = 80
 """Of an interval with a root, at most."""
 

@@ -157,7 +157,7 @@ def rounding(s: Stepper) -> float:
 
 @compiled
 def _inverse(a: float, at_a: float, b: float, at_b: float, c: float, at_c: float) -> float:
-    """Root by inverse interpolation: where the parabola through (value, place) of three points has value zero."""
+    """Root by inverse interpolation: where the parabola through (value, argument) of three points has value zero."""
     return (
         a * at_b * at_c / ((at_a - at_b) * (at_a - at_c))
         + b * at_a * at_c / ((at_b - at_a) * (at_b - at_c))

@@ -4,9 +4,9 @@ It is the closed form of `gearidae.contact.attraction`, scaled. Per unit length 
 with :math:`-c\,h^{-5/2}`, h its gap with its offset. It would do so at any distance: the pull at the cut-off is taken
 off everywhere, so that force and energy end there continuously and nothing is lost where a pair leaves.
 
-A pair's energy is :math:`\ell \sum_m s_m U_m(g)`, with its contact length and the shares of the materials at its place.
-That gives the force along the line of action and, at fixed gap, the one along the path that `mesh.radius_force` stands
-for.
+A pair's energy is :math:`\ell \sum_m s_m U_m(g)`, with its contact length and the shares of the materials at its
+position. That gives the force along the line of action and, at fixed gap, the one along the path that
+`mesh.radius_force` stands for.
 """
 
 from __future__ import annotations

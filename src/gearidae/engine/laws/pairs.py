@@ -4,7 +4,7 @@ Laws of contacts come first: many surfaces on average, elastic bodies, or asperi
 one. Sums of forces and energies begin at -0.0, to which adding a number gives that number.
 
 The length of a contact, and with it the number of asperities in touch, changes along the path of contact, and shares of
-the materials that change with tooth and place change it as well. In the paper's model no force pays for that; see
+the materials that change with tooth and position change it as well. In the paper's model no force pays for that; see
 `gearidae.engine.observers.balance`, which books the power. With ``mesh.radius_force`` a force does: a pair with the
 length :math:`\ell s_m` of each material, of the energy :math:`U_m` per length, pushes the gear along its motion
 :math:`x_2` with
@@ -46,7 +46,7 @@ from gearidae.laws.pair_law import PairForce, PairLaw, in_reach
 from gearidae.laws.pairs import MESH_LAWS
 
 PAIR_LAWS: Final[tuple[PairLaw, ...]] = (STATISTICAL, ELASTIC, DISCRETE, ATTRACTION, *MESH_LAWS)
-"""In the order of additions. A mesh says which of these it has: `pair_laws` is the sum of 1, 2, 4.. by their places."""
+"""In the order of additions. `pair_laws` of a mesh is the sum of 1, 2, 4.. by their order here of those that it has."""
 
 _NOTHING: Final = PairForce(*(-0.0,) * 12)
 

@@ -133,13 +133,13 @@ def set_all_branches(m: Model) -> None:
 
 @compiled
 def force_branch(m: Model, k: int, material: int) -> int:
-    """Place of a material's branch of the force law at a history's joined height, among the rows."""
+    """Index of a material's branch of the force law at a history's joined height, among the rows."""
     return m.scene.branches_at + (2 * MATERIALS * k + material) * m.scene.branch_length
 
 
 @compiled
 def energy_branch(m: Model, k: int, material: int) -> int:
-    """Place of a material's branch of the stored energy there."""
+    """Index of a material's branch of the stored energy there."""
     return m.scene.branches_at + (2 * MATERIALS * k + MATERIALS + material) * m.scene.branch_length
 
 

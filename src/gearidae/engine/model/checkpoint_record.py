@@ -129,7 +129,7 @@ EXTREMES_FIELDS: Final = (  # at accepted times and located extrema
     count("stuck_exits", "mesh exits until then"),
     count("turn_backs", "how often the drive flank's adhesion has turned the gear back there"),
     Quantity("turn_back_time", "when it last did", TIME),
-    Quantity("adhering", "all times from one such to the next in the same place", TIME),
+    Quantity("adhering", "all times from one such to the next at the same position", TIME),
     *FORCE_EXTREMES,
 )
 
@@ -141,7 +141,7 @@ _PASSAGE_FIELDS = (
 MOST_ZEROS: Final = 12
 """Zeros of the gear's speed that are kept as beginnings of a standstill."""
 HIGH: Final = MOST_ZEROS
-"""Place among the zeros: of the zero farthest forward."""
+"""Index among the zeros: of the zero farthest forward."""
 MOST_SLOW: Final = 32
 MOST_STANDSTILLS: Final = 64
 
@@ -211,7 +211,7 @@ _STANDING_FIELDS: Final = (
     count("held", "what friction held then", low=FREE, high=AT_REST),
     Quantity("place", "of the gear at its last zero", PITCHES),
     Quantity("place_time", "when that was", SECONDS),
-    flag("near", "1 as long as the gear is near that place"),
+    flag("near", "1 as long as the gear is near that position"),
     Quantity("near_time", "until when it was", SECONDS),
     Quantity("near_position", "where it was then", PITCHES),
     Quantity("slip_time", "when dry friction last let go", SECONDS),

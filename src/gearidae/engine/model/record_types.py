@@ -1,4 +1,4 @@
-"""What the records of a run share: kinds, flanks and shafts by number, places in the state vector, kinds of fields."""
+"""What the records of a run share: kinds, flanks and shafts by number, indices of the state vector, kinds of fields."""
 
 from __future__ import annotations
 

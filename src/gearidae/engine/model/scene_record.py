@@ -1,7 +1,7 @@
 """``SCENE``: constants of a run, made from the scene and never read from a file.
 
 Units in brackets: lengths in sigma, times in tau, forces in F, speeds in sigma/tau, angles along the mesh in base
-pitches (pb) unless SI says otherwise; [1] has none, [index] is a place in the tables or rows of the model.
+pitches (pb) unless SI says otherwise; [1] has none, [index] counts in the tables or rows of the model.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ COVERAGE: Final = record_type(  # of one side's flanks
     ("teeth", INT),  # rows of the table, one after the other: of each tooth, or one for all [1]
     ("places", INT),  # fractions in each, at equal parts of the path of contact [1]
     ("values_at", INT),  # the table among the tables [index]
-    ("place_scale", REAL),  # places in a pitch [1/pb]
+    ("place_scale", REAL),  # fractions in a pitch [1/pb]
 )
 
 TORQUE: Final = record_type(  # of a shaft
@@ -60,7 +60,7 @@ POPULATION: Final = record_type(
         INT,
     ),  # of each level and flank the first asperity, and of each level one past the last [index]
     ("listed_at", INT),  # asperities of the levels, one level after the other, among the tables [index]
-    ("arcs_at", INT),  # places along the flank of all asperities, among the tables [index]
+    ("arcs_at", INT),  # positions along the flank of all asperities, among the tables [index]
     ("heights_at", INT),  # their heights among the tables [index]
     ("kinds_at", INT),  # where the numbers of their kinds are, among the tables [index]
     ("by_gear_tooth", INT),  # 1 where kinds depend on the gear's tooth: these where it is covered there
@@ -177,7 +177,7 @@ SCENE: Final = record_type(
     ("lowest_gap", REAL),  # the model holds above this gap of a pair [sigma]
     ("light_gap", REAL),  # gap in the middle of elastic contacts above which rigid ones would do [sigma]
     ("material", MATERIAL, (MATERIALS,)),
-    ("by_place", INT),  # 1 where shares change with tooth and place and are not in the force scales
+    ("by_place", INT),  # 1 where shares change with tooth and position and are not in the force scales
     ("patches", INT),  # 1 where the pinion's fractions are those of the interface
     ("coverage", COVERAGE, (2,)),  # of the pinion and of the gear
     ("loading_at", INT),  # loading branch of all materials, or with `by_place` of each, in forces [index]
@@ -205,7 +205,7 @@ SCENE: Final = record_type(
     ("scratch_at", INT),  # scratch space for them, among the rows [index]
     ("trial_at", INT),  # where a state whose nodes are eliminated gets its deflections, in rows [index]
     # what flanks are exposed to
-    ("bins", INT),  # along the path of contact, places to a user; 0 if no exposures are kept [1]
+    ("bins", INT),  # along the path of contact, `place` in a dataset; 0 if no exposures are kept [1]
     ("bins_per_pitch", REAL),  # [1/pb]
     ("pitch_point", REAL),  # on the path of contact [pb]
     ("sliding_pinion", REAL),  # sliding speed a pitch from there, over the pinion's surface velocity [1]

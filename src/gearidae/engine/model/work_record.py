@@ -260,8 +260,8 @@ FRICTION_WORK: Final = record_type(  # friction
 CONTACT: Final = record_type(  # of a population: the candidates of a pair
     ("known", INT),  # 1 where they have been chosen for the pair of the history
     ("gap", REAL),  # down to which they hold [sigma]
-    ("low", REAL),  # place along the path from which they hold [pb]
-    ("high", REAL),  # place up to which they hold [pb]
+    ("low", REAL),  # position along the path from which they hold [pb]
+    ("high", REAL),  # position up to which they hold [pb]
     ("count", INT),  # [1]
     ("joined", INT),  # those that are joined [1]
     ("asperity_switches", INT),  # asperities that have joined or detached at the present root [1]
@@ -269,7 +269,7 @@ CONTACT: Final = record_type(  # of a population: the candidates of a pair
     ("start_moves", INT),  # 1 where it was on the path of contact then
     ("start_gap", REAL),  # its gap then [sigma]
     ("start_rate", REAL),  # its gap rate then [sigma/tau]
-    ("start_place", REAL),  # its place along the path then [pb]
+    ("start_place", REAL),  # its position along the path then [pb]
     ("start_place_rate", REAL),  # the rate of that [pb/tau]
 )
 
@@ -322,7 +322,7 @@ WORK: Final = record_type(
         "shares",
         REAL,
         (2 * SLOTS_HIGH, MATERIALS),
-    ),  # by tooth and place, of elastic contacts as last computed [1]
+    ),  # by tooth and position, of elastic contacts as last computed [1]
     ("settling", SETTLING, (2 * SLOTS_HIGH,)),  # of elastic contacts
     ("not_converged", INT),  # 1 where no stable deflections have been found since it was set to 0
     ("adams", ADAMS),  # of the integrator

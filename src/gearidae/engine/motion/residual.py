@@ -32,7 +32,7 @@ from gearidae.engine.pairs.pair_force import MeshForces
 
 @compiled(inline=True)
 def motion(m: Model, t: float, y: Floats, yp: Floats, out: Floats, settling: bool) -> MeshForces:
-    """F(t, y, y') of the motion, in the first places of `out`; the forces of the mesh are returned.
+    """F(t, y, y') of the motion, in the first numbers of `out`; the forces of the mesh are returned.
 
     `settling` as for `mesh_forces`; the state may then be that of the motion alone.
     """

@@ -6,7 +6,7 @@ points of the gap are accepted times, so that no corner of the force lies betwee
 detaches the rate of its load is infinite: there the parabola with the rate before is taken.
 
 The pair takes :math:`-(W \dot g + P \dot x)` from the motion, W being the force along the line of action, g the gap, P
-the force along the path of contact and x the place there. Friction of the flanks is added as the energy balance
+the force along the path of contact and x the position there. Friction of the flanks is added as the energy balance
 integrates it.
 """
 

@@ -1,4 +1,4 @@
-"""Shares of the materials of a pair; tables by tooth and place are `gearidae.scene.coating_table`.
+"""Shares of the materials of a pair; tables by tooth and position are `gearidae.scene.coating_table`.
 
 Without such tables the shares are in the materials' force scales, and the loading branches of all materials have been
 added up at set-up: shares are then ones, which do not change.
@@ -31,14 +31,14 @@ class Fraction(NamedTuple):
 
 @compiled(inline=True)
 def fraction_of(m: Model, side: int, coast: int, pair: int, inside: float) -> Fraction:
-    """Covered fraction of a side's tooth, a smooth step from the middle of each place to that of the next one.
+    """Covered fraction of a side's tooth: smooth steps between the middles of the intervals of its table.
 
     On the coast flank the gear's tooth is the next one.
     """
     coverage = m.scene.coverage[side]
     row = coverage.values_at + int(pair + m.state.turns + side * coast) % coverage.teeth * coverage.places
     along = inside * coverage.place_scale - 0.5
-    # it stays before the middle of the first place, or behind that of the last one
+    # it stays before the middle of the first interval, or behind that of the last one
     last = min(max(math.floor(along), -1), coverage.places - 1)
     before = m.tables[row + max(last, 0)]
     change = m.tables[row + min(last + 1, coverage.places - 1)] - before

@@ -2,7 +2,7 @@
 
 A pair is known by its number i. On the drive flank it stands ``phase - i`` pitches along the path of contact, on the
 coast flank, mirrored about the pitch point and half a pitch later, ``coast_phase + i - phase``. A roller is pair 0 of
-the drive flank of a gear that is held, at one place of a path of contact without length. All functions take the
+the drive flank of a gear that is held, at one point of a path of contact without length. All functions take the
 records of `gearidae.engine.model.state` and the state's numbers, and are compiled.
 """
 
@@ -189,7 +189,7 @@ def pair_state(m: Model, coast: int, number: int, y: Floats) -> PairState:
 def pair_gap(
     m: Model, coast: int, pair: int, u: float, v: float, phase: float, w: float
 ) -> tuple[float, float, float, float]:
-    """Gap, its rate, slope of the separation ds/dxi, and the place along the path clipped to it (in pitches)."""
+    """Gap, its rate, slope of the separation ds/dxi, and the position along the path clipped to it (in pitches)."""
     s = m.scene
     along = s.coast_phase + pair - phase if coast else phase - pair
     inside = min(max(along, 0.0), s.contact_ratio)
@@ -254,7 +254,7 @@ def gap_and_rate(m: Model, coast: int, pair: int, y: Floats) -> tuple[float, flo
 
 @compiled(inline=True)
 def on_path(pair: PairState, place: float, place_rate: float, moves: bool) -> PairState:
-    """Return the same pair with another place along the path of contact."""
+    """Return the same pair with another position along the path of contact."""
     return PairState(
         pair.coast,
         pair.number,

@@ -1,7 +1,7 @@
-"""The candidates of a pair: asperities that are joined, and those that may join while gap and place change little.
+"""The candidates of a pair: asperities that are joined, and those that may join while gap and position change little.
 
-They are chosen anew where the gap has fallen or the place has moved by more than a margin. Asperities are looked for in
-a window of arcs, among those above the highest of `LEVELS` that no candidate is below.
+They are chosen anew where the gap has fallen or the position has moved by more than a margin. Asperities are looked for
+in a window of arcs, among those above the highest of `LEVELS` that no candidate is below.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ PLACE_MARGIN: Final = 0.01  # pitches
 
 @compiled(inline=True)
 def covers(m: Model, k: int, gap: float, place: float) -> bool:
-    """Whether the candidates of the k-th history hold at a gap and a place of its pair."""
+    """Whether the candidates of the k-th history hold at a gap and a position of its pair."""
     contact = m.work.contact[k]
     return bool(contact.known != 0 and gap >= contact.gap and contact.low <= place <= contact.high)
 
@@ -62,7 +62,7 @@ def choose(m: Model, k: int, coast: int, pair: int, gap: float, low: float, high
     coast, pair : int
         Flank and number of the pair.
     gap, low, high : float
-        Least gap, and places along the path between which they are to hold; margins are added.
+        Least gap, and positions along the path between which they are to hold; margins are added.
     """
     contact, index, joined, kept = (
         m.work.contact[k],
@@ -114,7 +114,7 @@ def choose_beside(m: Model, k: int, coast: int, pair: int, gap: float, low: floa
 
 @compiled
 def list_joined(m: Model, k: int) -> None:
-    """Note which candidates of a history are joined, in the order of places."""
+    """Note which candidates of a history are joined, in the order of positions."""
     contact, sign, joined = m.work.contact[k], column(m, k, SIGN), column(m, k, JOINED)
     contact.joined = 0
     for j in range(contact.count):
@@ -125,7 +125,7 @@ def list_joined(m: Model, k: int) -> None:
 
 @compiled(inline=True)
 def _listed(m: Model, level: int, j: int) -> int:
-    """Place of the j-th asperity of a level among all."""
+    """Index of the j-th asperity of a level among all."""
     return j if level == 0 else int(m.tables[m.scene.population.listed_at + j])
 
 
@@ -155,7 +155,7 @@ def _kind(m: Model, k: int, asperity: int) -> int:
 
 @compiled
 def _gear_covered(m: Model, k: int, asperity: int) -> bool:
-    """Whether an asperity meets a covered place of the gear's tooth in the pair of the k-th history."""
+    """Whether an asperity meets a covered part of the gear's tooth in the pair of the k-th history."""
     population, coast = m.scene.population, flank_of_history(m, k)
     place = place_of_arc(m, m.tables[population.arcs_at + asperity])
     fraction = fraction_of(m, 1, coast, m.state.history[k].pair, place).value

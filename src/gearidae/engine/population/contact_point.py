@@ -1,7 +1,7 @@
 r"""Where a pair touches: arc on the pinion's flank, radius and their changes along the path of contact.
 
-With places :math:`\xi` along the path, arcs s and radii R in base pitches (of a roller in its radius), heights and gaps
-in roughnesses, an asperity at the arc s and of the height z overlaps by
+With positions :math:`\xi` along the path, arcs s and radii R in base pitches (of a roller in its radius), heights and
+gaps in roughnesses, an asperity at the arc s and of the height z overlaps by
 
 .. math:: \delta = z - g - k\,\frac{x^2}{2R}, \qquad x = s - s_1, \qquad s_1 = \frac{\pi}{z_1} r_1^2
 
@@ -43,7 +43,7 @@ def pair_now(m: Model, coast: int, number: int, y: Floats) -> PairState:
     """Return a pair at a state.
 
     The last two mesh marks tell whether it is on the path, so that a step that ends at a mark sees the side it comes
-    from, beyond which its place is not clipped.
+    from, beyond which its position is not clipped.
     """
     pair = pair_state(m, coast, number, y)
     if not is_on_path(m, coast, number):
@@ -69,7 +69,7 @@ def state_of_pair(m: Model, coast: int, number: int, y: Floats) -> PairState:
 
 @compiled(inline=True)
 def spot_at(m: Model, place: float, moves: bool) -> Spot:
-    """Where a pair touches at a place along the path; `moves` says whether it would change along it."""
+    """Where a pair touches at a position along the path; `moves` says whether it would change along it."""
     scale, curvature = m.scene.population.arc_scale, m.scene.sum_curvature
     pinion = m.scene.start_radius + place
     arc, radius = scale * pinion * pinion, pinion - pinion * pinion * curvature
@@ -82,7 +82,7 @@ def spot_at(m: Model, place: float, moves: bool) -> Spot:
 
 @compiled
 def place_of_arc(m: Model, arc: float) -> float:
-    """Place along the path of contact, clipped to it, at which a pair touches at an arc."""
+    """Position along the path of contact, clipped to it, at which a pair touches at an arc."""
     along = math.sqrt(max(arc, 0.0) / m.scene.population.arc_scale) - m.scene.start_radius
     return min(max(along, 0.0), m.scene.contact_ratio)
 

@@ -1,7 +1,7 @@
 """Where a population lies among a model's tables and rows.
 
-Tables hold all asperities of all flanks, one flank after the other and each in the order of places; an asperity is
-known by its place among them. Rows hold for each pair's history its candidates, those that may join or detach soon:
+Tables hold all asperities of all flanks, one flank after the other and each in the order of positions; an asperity is
+known by its index among them. Rows hold for each pair's history its candidates, those that may join or detach soon:
 `FIELDS` columns of as many numbers as a flank has asperities at most.
 """
 
@@ -16,12 +16,12 @@ from gearidae.engine.model.state import Floats, Model
 
 # columns of the candidates
 INDEX: Final = 0  # of the asperity among all,
-ARC: Final = 1  # its place on the flank,
+ARC: Final = 1  # its position on the flank,
 HEIGHT: Final = 2  # its height less the recess of its material,
 KIND: Final = 3  # and where the numbers of its kind are
 SIGN: Final = 4  # 1 if it is joined, -1 if it is free,
 BOUND: Final = 5  # and the distance of detachment or of joining
-JOINED: Final = 6  # positions among the candidates of those that are joined, in the order of places
+JOINED: Final = 6  # indices among the candidates of those that are joined, in the order of positions
 REMEMBERED: Final = 7  # asperities that are joined while candidates are chosen anew
 FIELDS: Final = 8
 
@@ -41,7 +41,7 @@ KINDS: Final = 10
 
 @compiled(inline=True)
 def column(m: Model, k: int, field: int) -> np.uintp:
-    """Place of a column of the k-th history's candidates among the rows."""
+    """Index of a column of the k-th history's candidates among the rows."""
     population = m.scene.population
     return np.uintp(population.rows_at + (k * FIELDS + field) * population.capacity)
 

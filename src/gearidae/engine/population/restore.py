@@ -13,7 +13,7 @@ from gearidae.engine.population.layout import REMEMBERED, column, flank_of
 
 @compiled_once(POPULATION)
 def take_joined(m: Model, y: Floats, joined: Floats) -> int:
-    """Let asperities be joined, given by their places among all in rising order; how many of them pairs have."""
+    """Let asperities be joined, given by their indices among all in rising order; how many of them pairs have."""
     taken = 0
     for k in range(m.scene.histories):
         forget(m, k)

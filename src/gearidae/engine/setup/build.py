@@ -203,7 +203,7 @@ def _roller_problem(scene: RollerScene, nodes: Nodes | None, begin: Start) -> Pr
     s, tables = np.zeros(1, SCENE)[0], Tables()
     s.kind, s.length_unit = ROLLER, sigma
     s.time_unit, s.force_unit = sigma / abs(speed), roller.mass * speed**2 / sigma
-    # the gear is held: its pair stays at one place, where its contact has the length 1, of a path without length
+    # the gear is held: its pair stays at one point, where its contact has the length 1, of a path without length
     s.pinion_inverse_mass = s.phase_rate = s.start_radius = 1.0
     s.clearance = s.nearest = (0.0, math.inf)
     s.coast_phase = 0.25
@@ -301,7 +301,7 @@ def _add_errors(s: Record, tables: Tables, scene: GearScene) -> None:
     s.error_count, s.error_at = len(harmonics), tables.add([x for harmonic in harmonics for x in harmonic])
     s.has_error = int(s.error_count > 0 or s.gear_runout != 0.0 or s.orbit != 0.0)
     order = max((order for order, _, _ in harmonics), default=0)
-    # two places of a table are half a period
+    # two fractions of a table are half a period
     places = max(len(table[0]) for table in scene.coating.tables)
     if places > 1:
         order = max(order, 0.5 * places / float(s.contact_ratio) * float(s.pinion_teeth))

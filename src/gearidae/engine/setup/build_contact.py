@@ -128,14 +128,14 @@ def add_contact(
 
 
 def parts_of(scene: Scene) -> tuple[Material, ...]:
-    """Materials with the shares that their force scales hold: one each where shares change with tooth and place."""
+    """Materials with the shares that their force scales hold: one each where shares change with tooth and position."""
     if not scene.coating.by_place:
         return scene.materials()
     return tuple(material._replace(share=1.0) for material in scene.materials())
 
 
 def add_coverage(s: Record, tables: Tables, scene: Scene) -> None:
-    """Lay out the fractions by tooth and place, if there are any."""
+    """Lay out the fractions by tooth and position, if there are any."""
     if not scene.coating.by_place:
         return
     s.by_place, s.patches = 1, int(scene.coating.pairing == "patches")
@@ -146,7 +146,7 @@ def add_coverage(s: Record, tables: Tables, scene: Scene) -> None:
 def add_fractions(
     coverage: Record, tables: Tables, table: Sequence[Sequence[float]], contact_ratio: float
 ) -> None:
-    """Lay out a side's fractions by tooth and place; `coverage`, its ``COVERAGE``, is changed."""
+    """Lay out a side's fractions by tooth and position; `coverage`, its ``COVERAGE``, is changed."""
     coverage.teeth, coverage.places = len(table), len(table[0])
     coverage.values_at = tables.add(np.array(table).ravel())
     coverage.place_scale = len(table[0]) / contact_ratio

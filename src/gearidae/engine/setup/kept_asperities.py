@@ -1,6 +1,6 @@
 """What a checkpoint keeps of a population: which asperities are joined, and a digest of all.
 
-The block has the digest's four numbers, the number of joined asperities, each by its place among all, and zeros up to a
+The block has the digest's four numbers, the number of joined asperities, each by its index among all, and zeros up to a
 multiple of `WORDS`, so that its length changes seldom.
 """
 
@@ -20,7 +20,7 @@ FIRST: Final = 5  # words in front of the asperities
 
 
 def joined_asperities(m: Model) -> Floats:
-    """Return the joined asperities of all pairs by their places among all, in rising order."""
+    """Return the joined asperities of all pairs by their indices among all, in rising order."""
     places = [
         joined_candidates(m, k)[INDEX] for k in range(m.scene.histories) if m.state.history[k].pair != EMPTY
     ]
@@ -70,7 +70,7 @@ def joined_in(m: Model, block: Floats) -> Floats:
     require(
         bool(whole.all() and (np.diff(joined) > 0.0).all()),
         "joined asperities",
-        "places of asperities in order",
+        "indices of asperities in order",
     )
     return joined
 

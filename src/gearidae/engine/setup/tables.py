@@ -1,4 +1,4 @@
-"""Collecting the arrays of variable length that a model reads, with the place of each."""
+"""Collecting the arrays of variable length that a model reads, with the index of each."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Tables:
         self.size = 0
 
     def add(self, numbers: Floats | Sequence[float]) -> int:
-        """Append numbers, and return the place where they begin."""
+        """Append numbers, and return the index at which they begin."""
         part, start = np.asarray(numbers, np.float64), self.size
         self._parts.append(part)
         self.size += part.size

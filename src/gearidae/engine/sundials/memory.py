@@ -84,7 +84,7 @@ def numbers(vector: int, n: int) -> Floats:
 
 
 OPERATIONS: Final = 64
-"""Places that a table of SUNDIALS' functions has at most."""
+"""Entries that a table of SUNDIALS' functions has at most."""
 
 
 @compiled
@@ -96,7 +96,7 @@ def replace(record: int, where: Ints, functions: Ints) -> None:
     record : int
         Its address.
     where : ndarray of int64, shape (n + 1,)
-        Place of the table in the record, and of the functions in the table.
+        Index of the table in the record, and of the functions in the table.
     functions : ndarray of int64, shape (n,)
         Addresses.
     """

@@ -99,7 +99,7 @@ def places() -> NDArray[np.int64]:
     Returns
     -------
     ndarray of int64, shape (3,)
-        Place of the table in a linear solver's record, those of `OF_SOLVERS` in the table.
+        Index of the table in a linear solver's record, those of `OF_SOLVERS` in the table.
 
     Raises
     ------
@@ -125,7 +125,7 @@ def newton_places() -> NDArray[np.int64]:
     Returns
     -------
     ndarray of int64, shape (4,)
-        Place of the table in a nonlinear solver's record, those of `OF_NEWTON` in the table.
+        Index of the table in a nonlinear solver's record, those of `OF_NEWTON` in the table.
 
     Raises
     ------
@@ -154,13 +154,13 @@ def _bench() -> Iterator[tuple[ctypes.c_int64, ctypes.c_int64, NDArray[np.float6
 
 
 def _table_place(record: int, context: ctypes.c_int64) -> int:
-    """Place of the table of functions in a record: just before the context; 0 if that is not there."""
+    """Index of the table of functions in a record: just before the context; 0 if that is not there."""
     fields = _words(record, 4)
     return fields.index(context.value) - 1 if context.value in fields[1:] else 0
 
 
 def _operations(record: int, table: int, size: int, names: tuple[str, ...], kind: str) -> list[int]:
-    """Places of these functions in the table of so many that a record has."""
+    """Indices of these functions in the table of so many that a record has."""
     functions = _words(_words(record, table + 1)[table], size) if table else []
     wanted = [binding.address_of_symbol(name) for name in names]
     if any(function not in functions for function in wanted):

@@ -3,7 +3,7 @@
 The rates are those of a frozen state. Between them the state is integrated over passages by scipy's Runge-Kutta pair
 of order 3(2) (Bogacki and Shampine), so that the error of each jump is estimated and its length follows from the
 tolerance.
-Where the gear sticks there is no rate: steps are then shortened until the place is known. Steps that would be shorter
+Where the gear sticks there is no rate: steps are then shortened until the passage is known. Steps that would be shorter
 than what their rates cost are not worth a jump: there the cycles are simulated one after another.
 """
 
@@ -104,7 +104,7 @@ def jump(
     least : float, optional
         Mean of the state at which the integration ends.
     bracket : float, optional
-        Width, over the passages, at which the place where the gear sticks is known well enough.
+        Width, over the passages, at which the passage where the gear sticks is known well enough.
     direct : Direct, optional
         Simulates cycle after cycle where a jump is not worth its rates.
     life : Life, optional

@@ -1,1 +1,1 @@
-"""What the flanks are exposed to, tooth by tooth and place by place."""
+"""What the flanks are exposed to, tooth by tooth and bin by bin."""

@@ -1,4 +1,4 @@
-"""Bins along the path of contact, places to a user, into which the exposures of a tooth are divided."""
+"""Bins along the path of contact, `place` in a dataset, into which the exposures of a tooth are divided."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ def exposures_of(m: Model) -> Floats:
 
 
 def exposure_table(m: Model) -> Floats:
-    """Return them by tooth of both flanks, quantity and place; writable."""
+    """Return them by tooth of both flanks, quantity and bin; writable."""
     return exposures_of(m).reshape(-1, int(m.scene.exposure_rows), int(m.scene.bins))
 
 
 @compiled(inline=True)
 def bin_at(m: Model, inside: float) -> int:
-    """Index of the place along the path of contact, whose end belongs to the last one."""
+    """Bin of a position along the path of contact, whose end belongs to the last one."""
     return min(int(m.scene.bins_per_pitch * inside), m.scene.bins - 1)
 
 
@@ -39,21 +39,21 @@ def row_of(m: Model, coast: int, pair: int) -> int:
 
 @compiled(inline=True)
 def share_at_edge(m: Model, here: int, start: float, end: float) -> float:
-    """Share of the way from one point of the path to another at which a contact leaves a place, given by its index."""
+    """Share of the way from one point of the path to another at which a contact leaves a bin, given by its index."""
     edge = (here + 1 if end > start else here) / m.scene.bins_per_pitch
     return (edge - start) / (end - start)
 
 
 @compiled(inline=True)
 def way_to_edge(m: Model, k: int, inside: float, turn: float) -> float:
-    """Way to the end of the place that a pair is in, in places; infinite where the path of contact ends there.
+    """Way to the end of the bin that a pair is in, in bins; infinite where the path of contact ends there.
 
     Parameters
     ----------
     k : int
         Index of the pair's history, whose pressure has been looked at there.
     inside : float
-        Place on the path of contact, in pitches.
+        Position on the path of contact, in pitches.
     turn : float
         Direction in which the phase goes, by its sign.
     """

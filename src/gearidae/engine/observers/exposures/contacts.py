@@ -1,12 +1,12 @@
-r"""Asperity contacts that closing pairs have made, and the energy lost by them, tooth by tooth and place by place.
+r"""Asperity contacts that closing pairs have made, and the energy lost by them, tooth by tooth and bin by bin.
 
 A contact of length :math:`\ell` that closes from one turning point to the next makes :math:`\int \ell\, d\Psi` contacts
 of each material, with :math:`\Psi` those per length. The energy balance follows how much less that is than the length
 times the rise of :math:`\Psi` (the lag, `gearidae.engine.observers.adhesion_loss`): of rigid bodies with hysteresis and
-uniform coverage, contacts are added up at turning points, and where a contact leaves a place. Of others, the lag of
+uniform coverage, contacts are added up at turning points, and where a contact leaves a bin. Of others, the lag of
 each material is not known: there they are added up as often as sliding work is, with the mean length.
 
-Asperities of a population each count at their place on the flank, and lose when they join and when they detach, as in
+Asperities of a population each count in their bin of the flank, and lose when they join and when they detach, as in
 the energy balance. The largest pressure of a pair is followed from one look at its force to the next.
 """
 
@@ -60,7 +60,7 @@ def turn_to_closing(m: Model, y: Floats, k: int, gap: float) -> None:
 
 @compiled(inline=True)
 def joins_here(m: Model, k: int, inside: float, gap: float) -> bool:
-    """Whether a contact that may be closing is to be added up: it has left its place, or the lag is not known."""
+    """Whether a contact that may be closing is to be added up: it has left its bin, or the lag is not known."""
     if m.state.history[k].direction > 0.0:
         return False
     often = m.work.exposing.often != 0
@@ -131,14 +131,14 @@ def _note_numbers(m: Model, y: Floats, k: int, gap: float) -> float:
 def _divide(
     m: Model, t: float, y: Floats, k: int, material: int, there: tuple[float, float, float], more: float
 ) -> None:
-    """Divide what a pair has made between the places that it has passed, by its gap on the way.
+    """Divide what a pair has made between the bins that it has passed, by its gap on the way.
 
     Parameters
     ----------
     m, t, y, k, material
         As for `join`.
     there : tuple of float
-        Place, gap and gap rate at that time.
+        Position, gap and gap rate at that time.
     more : float
         What it has made.
     """
@@ -158,7 +158,7 @@ def _divide(
 
 @compiled(inline=True)
 def _add(m: Model, k: int, material: int, here: int, more: float) -> None:
-    """Add contacts of a material to a place, and what they have lost."""
+    """Add contacts of a material to a bin, and what they have lost."""
     row, law = m.work.exposing.pair[k].row, m.scene.material[material]
     m.rows[row + (ROWS.contacts + material) * m.scene.bins + here] += more
     if law.stretch_limit > 0.0:
@@ -169,7 +169,7 @@ def _add(m: Model, k: int, material: int, here: int, more: float) -> None:
 
 @compiled(inline=True)
 def see_pressure(m: Model, t: float, k: int, inside: float, force: tuple[float, float]) -> None:
-    """Note the pressure of a pair, and that where it has passed from one place to the next since the last look.
+    """Note the pressure of a pair, and that where it has passed from one bin to the next since the last look.
 
     Parameters
     ----------
@@ -178,7 +178,7 @@ def see_pressure(m: Model, t: float, k: int, inside: float, force: tuple[float, 
     k : int
         Index of the pair's history.
     inside : float
-        Place on the path of contact, in pitches.
+        Position on the path of contact, in pitches.
     force : tuple of float
         Force there, with its rate.
     """
@@ -193,14 +193,14 @@ def see_pressure(m: Model, t: float, k: int, inside: float, force: tuple[float, 
     if here != exposure.seen_bin:
         if exposure.force > 0.0 or force[0] > 0.0:
             _note_crossings(m, t, k, inside, force)
-        exposure.lowest = m.scene.cutoff  # another place
+        exposure.lowest = m.scene.cutoff  # another bin
     exposure.seen_time, exposure.seen_position, exposure.seen_bin = t, inside, here
     exposure.force, exposure.force_rate = force
 
 
 @compiled(inline=True)
 def note_pressure(m: Model, k: int, here: int, inside: float, force: float) -> None:
-    """Note the pressure of a contact in a place, where it is the largest so far."""
+    """Note the pressure of a contact in a bin, where it is the largest so far."""
     row = m.work.exposing.pair[k].row + ROWS.pressure * m.scene.bins + here
     radius = m.scene.start_radius + inside
     # of squares: a root only where there is something to note
@@ -210,7 +210,7 @@ def note_pressure(m: Model, k: int, here: int, inside: float, force: float) -> N
 
 @compiled
 def _note_crossings(m: Model, t: float, k: int, inside: float, force: tuple[float, float]) -> None:
-    """Note the pressure where a pair has passed from one place to the next, on the cubic of its force.
+    """Note the pressure where a pair has passed from one bin to the next, on the cubic of its force.
 
     Parameters
     ----------

@@ -1,23 +1,23 @@
-r"""What the flanks are exposed to, tooth by tooth and place by place, kept at the solver's own steps.
+r"""What the flanks are exposed to, tooth by tooth and bin by bin, kept at the solver's own steps.
 
-For both flanks of every tooth of the pinion and every place along the path of contact four sums are kept, in `rows`:
+For both flanks of every tooth of the pinion and every bin along the path of contact four sums are kept, in `rows`:
 
 - asperities that have come into contact, :math:`\int \ell\, d\Psi` for each material. What a contact has joined at an
   accepted time is :math:`\Psi(\zeta)`, with the play operator's joined height :math:`\zeta` there; all turning points
   are accepted times, so that nothing is missed between them;
 - the energy that they have lost by it, in the proportion of the energy balance (where shares change with tooth and
-  place, as if the material covered everything);
+  bin, as if the material covered everything);
 - sliding work :math:`\int W |v_s| dt` of contacts that push, :math:`v_s` being the sum of both gears' angular speeds
   times the distance from the pitch point. It is integrated over one to six steps at once
   (`gearidae.engine.observers.exposures.sliding`), and to every onset and separation;
 - the largest pressure, :math:`W / (L \sqrt{2 R \sigma})`, at the same times, at turning points, and where a contact
-  passes from one place to the next.
+  passes from one bin to the next.
 
-An elastic contact is looked at as often as the energy balance closes an interval. Where a contact passes from one place
+An elastic contact is looked at as often as the energy balance closes an interval. Where a contact passes from one bin
 to the next in such an interval, what it has joined is divided by its gap there, on the cubic of the gap; of elastic
 contacts, and of sliding work, in proportion to the way. Contacts on the tip relief count at the end of the path.
 
-Asperities of a population are counted one by one, each at its own place (`contacts.add_asperity_switches`); sliding
+Asperities of a population are counted one by one, each in its own bin (`contacts.add_asperity_switches`); sliding
 work and pressure are those of the whole pair, where it touches. The work of friction is a fifth sum, of flanks that
 have friction (module `friction_work` of this package).
 """
@@ -240,7 +240,7 @@ def _begin_pair(m: Model, t: float, k: int, pair: int, inside: float) -> None:
 def _force(
     m: Model, t: float, y: Floats, which: tuple[int, int, int], there: tuple[float, float, float]
 ) -> tuple[float, float]:
-    """Force of a pair, given by flank, number and history, with a gap, a gap rate and a place; slope in the gap."""
+    """Force of a pair, given by flank, number and history, with a gap, a gap rate and a position; slope in the gap."""
     (coast, number, k), (gap, rate, inside) = which, there
     pair = PairState(coast, number, k, True, gap, rate, 0.0, inside, 0.0, False)
     force = force_of_pair(m, t, y, pair, False)

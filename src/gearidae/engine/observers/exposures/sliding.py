@@ -1,16 +1,16 @@
 """Sliding work of a pair, from one look at its power to the next: over one to six accepted steps of rigid bodies.
 
 Between two looks the power is taken as the cubic with its values and rates. An interval is divided where the power
-changes its sign in it, or the sliding speed at the pitch point, and where a contact passes from one place to the next.
+changes its sign in it, or the sliding speed at the pitch point, and where a contact passes from one bin to the next.
 
 The number of steps follows from the error estimate of the interval before, as an integrator chooses its steps. An
 interval ends with the step in which a force is expected to pass zero: a contact that pulls does no sliding work, and
 where the integral begins or ceases in between, it is the better the shorter the interval is. Where more than 600 steps
 go to a pitch, an interval is no longer than a hundredth of a pitch.
 
-Pressures are looked at where an interval ends, and just after a contact has left its place: a cubic, which gives the
+Pressures are looked at where an interval ends, and just after a contact has left its bin: a cubic, which gives the
 pressure at the edge, is most accurate close to its ends. Sliding work goes on from there, so that its sum does not
-depend on the number of places.
+depend on the number of bins.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ def add_sliding(
     sliding : tuple of float
         See `sliding_speeds`.
     inside : float
-        Place on the path of contact, in pitches.
+        Position on the path of contact, in pitches.
     gap, force : tuple of float
         Gap and force, each with its rate.
     """
@@ -114,7 +114,7 @@ def _add_pushing(m: Model, k: int, h: float, inside: float, there: tuple[float, 
     h : float
         Length of the interval.
     inside : float
-        Place on the path of contact at its end, in pitches.
+        Position on the path of contact at its end, in pitches.
     there : tuple of float
         Power at its end, and its rate.
     """
@@ -144,7 +144,7 @@ def _divide(
     there: tuple[float, float],
     pushing: tuple[float, float, float],
 ) -> None:
-    """Divide the work of an interval between places, by the integral of its power's cubic.
+    """Divide the work of an interval between bins, by the integral of its power's cubic.
 
     Parameters
     ----------
@@ -277,7 +277,7 @@ def next_look(m: Model, way: float, speed: float) -> None:
     Parameters
     ----------
     way : float
-        To the nearest edge of a place, in places.
+        To the nearest edge of a bin, in bins.
     speed : float
         As for `next_interval`.
     """

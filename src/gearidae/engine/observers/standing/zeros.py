@@ -1,8 +1,8 @@
 """Zeros of the gear's speed from which on it has stayed within half a pitch.
 
-Ringing makes millions of them. A zero is dropped if an earlier one in the same place has been left no farther and has
-been driven no sooner than it: what is judged from it is judged from the earlier one. Of what is left `MOST_ZEROS` are
-kept; where that is not enough, the two that are most alike become one.
+Ringing makes millions of them. A zero is dropped if an earlier one at the same position has been left no farther and
+has been driven no sooner than it: what is judged from it is judged from the earlier one. Of what is left `MOST_ZEROS`
+are kept; where that is not enough, the two that are most alike become one.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from gearidae.records.standing import GROWS, HALF_PITCH
 
 _PLACE: Final = 1.0 / 32.0
 _ALIKE: Final = 1e-3
-"""Pitches between zeros in the same place, and between distances that are the same."""
+"""Pitches between zeros at the same position, and between distances that are the same."""
 _LOOKS: Final = 1.0 / 64.0
 """Share of the time since the first zero after which the distances of a gear that creeps are looked at again."""
 _FASTER: Final = 1.1
