@@ -190,7 +190,7 @@ def _led(axis: Axis, dim: str, swept: dict[str, Any]) -> Axis:
 
 
 def _axes(parts: Sequence[xr.Dataset], key: str) -> list[Axis]:
-    """Axes of the whole: those of the parts, of which the one of `key` is walked from part to part."""
+    """Axes of the whole: the parts' axes, of which the one of `key` is walked from part to part."""
     part_axes = [_own_axes(part) for part in parts]
     with_key = [next((axis for axis in axes if key in axis), None) for axes in part_axes]
     rest = [[axis for axis in axes if key not in axis] for axes in part_axes]

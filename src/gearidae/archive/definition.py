@@ -101,7 +101,7 @@ def _are_usual(attributes: Mapping[Hashable, Any]) -> bool:
 
 
 def _beside(ds: xr.Dataset) -> tuple[dict[str, str], str]:
-    """Coordinates of each variable beside those of its dimensions, as its attribute tells them; and those of none."""
+    """Text of each variable's attribute `coordinates`, with all but its dimensions; coordinates that belong to none."""
     others = sorted(str(name) for name in {*ds.coords} - {*ds.dims})
     dims = {other: {*ds.variables[other].dims} for other in others}
     beside: dict[str, str] = {}

@@ -158,7 +158,7 @@ def _largest_force(extremes: Extremes) -> tuple[float, float]:
 
 
 def _energies(balance: Mapping[str, float] | None) -> dict[str, float]:
-    """Energies of the run summary from those of the energy balance; NaN without one."""
+    """Energies of the run summary, from the energy balance; NaN without one."""
     energies = {**(balance or dict.fromkeys(ENERGY_BALANCE, math.nan))}
     contact = energies["adhesion_loss"] + energies["stored_change"]
     return energies | {

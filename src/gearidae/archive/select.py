@@ -187,7 +187,7 @@ def run_scene(run: xr.Dataset) -> Scene:
 
 
 def refuse_other_labels(ds: xr.Dataset) -> None:
-    """Refuse a dataset whose labels are not those of its scene, which `xarray.concat` takes from the first run.
+    """Refuse a dataset whose labels differ from its scene's, which `xarray.concat` takes from the first run.
 
     Parameters
     ----------

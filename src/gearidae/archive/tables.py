@@ -75,7 +75,7 @@ def time_series(
 
 
 def _parts(variable: xr.DataArray, dims: tuple[str, ...]) -> list[str]:
-    """Dimensions of a sampled variable besides time and those of runs: the shafts or the meshes of a train."""
+    """Dimensions of a sampled variable besides time and swept keys: the shafts or the meshes of a train."""
     return [str(dim) for dim in variable.dims if dim != "time" and dim not in dims]
 
 

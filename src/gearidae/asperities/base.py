@@ -30,7 +30,7 @@ _X, _W = np.polynomial.legendre.leggauss(48)
 
 @dataclass(frozen=True, kw_only=True)
 class CoatedKey:
-    """The same key in the table ``coating``, of flanks that the monolayer covers.
+    """Key of a law in the table ``coating``, of flanks that the monolayer covers.
 
     Attributes
     ----------

@@ -69,5 +69,5 @@ class Dmt(AsperityLaw):
         return np.asarray(np.maximum(delta, 0.0) ** 1.5 - np.where(delta >= 0.0, self.pull_off, 0.0))
 
     def area(self, displacement: ArrayLike) -> Floats:
-        """Contact area, that of Hertz; see `AsperityLaw.area`."""
+        """Contact area of a Hertzian contact; see `AsperityLaw.area`."""
         return np.asarray(np.maximum(np.asarray(displacement, dtype=np.float64), 0.0))

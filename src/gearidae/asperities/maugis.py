@@ -147,7 +147,7 @@ _ZONES = (1e-100, 1e10)
 @register
 @dataclass(frozen=True)
 class Maugis(AsperityLaw):
-    """Asperities between JKR's (large `zone`) and those of rigid spheres (small `zone`).
+    """Asperities between JKR's (large `zone`) and rigid spheres (small `zone`).
 
     Attributes
     ----------

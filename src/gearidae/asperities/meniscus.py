@@ -244,7 +244,7 @@ class Meniscus(AsperityLaw):
         return np.asarray(0.4 * close**2.5 - self.pull * (0.5 * apart**2 / self.reach + close))
 
     def area(self, displacement: ArrayLike) -> Floats:
-        """Contact area of the solid, that of Hertz; see `AsperityLaw.area`."""
+        """Contact area of the solid, a Hertzian contact; see `AsperityLaw.area`."""
         return np.asarray(np.maximum(np.asarray(displacement, dtype=np.float64), 0.0))
 
     def area_nodes(self, low: ArrayLike, high: ArrayLike, x: Floats, w: Floats) -> tuple[Floats, Floats]:

@@ -145,7 +145,7 @@ class CacheLocator(getattr(caching, "_CacheLocator", object)):  # type: ignore[m
             self._folder.mkdir(parents=True, exist_ok=True)
 
     def get_source_stamp(self) -> str:
-        """What has to be the same for kept code to be fresh."""
+        """Stamp of the sources, by which kept code is fresh."""
         return self._stamp
 
     def get_disambiguator(self) -> str:

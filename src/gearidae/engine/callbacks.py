@@ -157,7 +157,7 @@ def callbacks(n: int, elastic: bool, as_ida: bool = False) -> Functions:
     Parameters
     ----------
     n : int
-        Unknowns that IDA sees: those of the motion, and of the nodes where IDA iterates by itself.
+        Unknowns that IDA sees: states of the motion, and deflections of the nodes where IDA iterates by itself.
     elastic : bool
         Whether the contact is elastic, and the equations solved by blocks.
     as_ida : bool, optional

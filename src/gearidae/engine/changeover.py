@@ -197,7 +197,7 @@ def extend_nodes(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
     old : Problem
         The elastic problem so far.
     new : Problem
-        The same, laid out for deeper contacts, with as many nodes.
+        Elastic problem laid out for deeper contacts, with as many nodes.
     checkpoint : ndarray
         Where the old one stands.
     """

@@ -75,7 +75,7 @@ def make_arrays(problem: Problem, m: Model, as_ida: bool) -> Arrays:
 
 
 def _weigh_motion(m: Model) -> int:
-    """Set the error weights of a motion whose nodes are eliminated to those of a rigid one; its number of states."""
+    """Set the error weights of a motion whose nodes are eliminated as for a rigid contact; its number of states."""
     motion = int(m.scene.states - m.scene.nodes * m.scene.histories)
     first = int(m.scene.error_weights_at)
     m.rows[first : first + motion] *= math.sqrt(motion / float(m.scene.states))

@@ -27,9 +27,9 @@ class Ended:
     balance : EnergyBalance, optional
         The latest energy balance; None if the run did not begin.
     extremes : Extremes, optional
-        The latest extremes, likewise.
+        The latest extremes; None if the run did not begin.
     checkpoint : ndarray, optional
-        That of the end; None where the run ended between two.
+        Checkpoint at the end; None where the run ended between two.
     """
 
     statistics: Statistics

@@ -73,8 +73,8 @@ def middle_deviation(h: float, deviation: Ends) -> float:
 def integral_of_cube(h: float, travel: float, speed: Ends) -> tuple[float, float]:
     """Integral of the cube of a speed's magnitude, and how far it may be out.
 
-    That of the speed itself is known, the travel: what is left to the quadrature is of second order in the speed's
-    deviation from its mean, and the deviation in the middle follows from those at the ends.
+    The integral of the speed itself is known, the travel: what is left to the quadrature is of second order in the
+    speed's deviation from its mean, and the deviation in the middle follows from those at the ends.
     """
     mean, (w0, rate0, w1, rate1) = travel / h, speed
     if mean * w0 <= 0.0 or mean * w1 <= 0.0:  # the speed has changed sign

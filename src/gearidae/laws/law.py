@@ -180,7 +180,7 @@ class ShaftLaw:
     ----------
     name : str
     drives : bool
-        Whether its work is that of the drive. At the gear such a law is a part of the dry resistance, which is
+        Whether its work counts as the drive's. At the gear such a law is a part of the dry resistance, which is
         set-valued. All others act as they are on either shaft, book their own losses, and at rest do not change.
     fields : tuple of (name, type)
         Constants of a shaft, in ``SCENE.torque``.

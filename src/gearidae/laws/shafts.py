@@ -136,7 +136,7 @@ def is_constant(m: Model, shaft: int) -> bool:
 
 @compiled
 def is_steady(m: Model, shaft: int, t: float) -> bool:
-    """Whether that of a shaft that does not turn stays as it is until a schedule enters its next segment."""
+    """Whether the torque of a shaft that does not turn stays as it is until a schedule enters its next segment."""
     return bool(_steady(m, shaft, t, True))
 
 

@@ -37,7 +37,7 @@ def covered_sides(scene: Scene, flank: FlankAsperities, gear_tooth: int) -> tupl
     Returns
     -------
     pinion, gear : ndarray of bool, shape (n,)
-        The same for patches, which cover both sides.
+        Which asperities lie on a covered part of each flank; alike for patches, which cover both sides.
     """
     places = along_path(scene, flank)
     pinion, gear = scene.coating.tables

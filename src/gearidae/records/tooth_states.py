@@ -61,7 +61,7 @@ class ToothContact:
 
     @property
     def state(self) -> ContactState:
-        """State of the pair: that of the part stretched furthest."""
+        """State of the part of the pair that is stretched furthest."""
         return max(self.states.values())
 
 

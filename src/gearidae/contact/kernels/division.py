@@ -53,7 +53,7 @@ class Division(NamedTuple):
 
     @property
     def above(self) -> float:
-        """Square of the number of pieces above it over their length in v: one over that of the first."""
+        """Square of the number of pieces above it over their length in v: one over the first piece's length."""
         return 0.0 if self.before == self.pieces else (self.pieces - self.before) ** 2 / (1.0 - self.kink)
 
     def scale(self, piece: int) -> float:

@@ -164,7 +164,7 @@ def number_table(kernel: Kernel = "line", join: float = 0.0) -> Floats:
 
 
 def _potential(pieces: Floats, low: float) -> Floats:
-    """Pieces of ``int_x^high f`` from those of f, shape (n, 8), both scaled by ``exp(max(x, 0)^2 / 2)``."""
+    """Pieces of ``int_x^high f`` from pieces of f, shape (n, 8), both scaled by ``exp(max(x, 0)^2 / 2)``."""
     h = 1.0 / KNOTS_PER_SIGMA
     knots = low + h * np.arange(len(pieces) + 1)
     x, w = gauss_rule(_GAUSS)
@@ -204,7 +204,7 @@ def _store_partial(law: Floats, end: Floats, table: Floats) -> None:
 
 @lru_cache(maxsize=8)
 def _stretch_integral(division: Division) -> Floats:
-    """Matrix from a piecewise polynomial f to that of ``v^-2 int_0^v v'^3 f dv'``, both in powers of the position."""
+    """Matrix from a piecewise polynomial f to ``v^-2 int_0^v v'^3 f dv'``, both in powers of the position."""
     nodes = np.polynomial.chebyshev.chebpts1(DEGREE + 1)
     to_powers = np.linalg.inv(np.vander(nodes, increasing=True))
     x, w = gauss_rule(_GAUSS)

@@ -274,7 +274,7 @@ def law_value(table: Floats, gap: float, joined: float) -> tuple[float, float]:
     Returns
     -------
     q, slope : float
-        Positive pushes apart. The slope is that of the branch the contact is on.
+        Positive pushes apart. The slope is along the branch that the contact is on.
     """
     q, slope = loading_value(table, HEADER, gap)
     more, rate = stretched_value(table, gap, joined)

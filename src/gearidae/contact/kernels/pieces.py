@@ -16,7 +16,7 @@ from gearidae.contact.kernels.layout import DEGREE, GAP_HIGH, GAP_LOW, KNOTS_PER
 
 
 def _scaled(x: Floats, derivatives: Floats, positive: bool) -> Floats:
-    """Derivatives of ``exp(x^2/2) f`` from those of f (first axis), on the side x > 0; f itself on the other."""
+    """Derivatives of ``exp(x^2/2) f`` from f and its own (first axis), on the side x > 0; f itself on the other."""
     if not positive:
         return derivatives
     x = np.maximum(x, 0.0)
@@ -104,7 +104,7 @@ def asperity_pieces(law: AsperityLaw, division: Division) -> Floats:
     Returns
     -------
     ndarray
-        Distance of joining; powers of the position in the piece, -1..1, of the load; those of the work.
+        Distance of joining; powers of the position in the piece, -1..1, of the load; powers of it, of the work.
     """
     nodes = np.polynomial.chebyshev.chebpts1(DEGREE + 1)
     to_powers = np.linalg.inv(np.vander(nodes, increasing=True))

@@ -89,7 +89,7 @@ def _piece(table: Floats, at: int, displacement: float) -> tuple[float, int, flo
 
 @compiled(inline=True)
 def asperity_value(table: Floats, at: int, displacement: float) -> tuple[float, float]:
-    """Load of an asperity in contact and its slope; below detachment those of the end of the branch, and no slope.
+    """Load of an asperity in contact and its slope; below detachment the load at the end of the branch, and no slope.
 
     Parameters
     ----------

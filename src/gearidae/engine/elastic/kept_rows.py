@@ -40,7 +40,7 @@ def kept_rows(m: Model) -> Floats:
 
 
 def restore_rows(m: Model, rows: Floats) -> None:
-    """Take rows back that have been checked, and work out what follows from them; ``m.state`` is that of the rows."""
+    """Take rows back that have been checked, and work out what follows from them; ``m.state`` belongs to the rows."""
     if m.scene.nodes == 0:
         return
     all_rows = _all_rows(m)

@@ -263,7 +263,7 @@ def stiffness_matrix(m: Model, k: int, out: Floats) -> None:
 
 @compiled(makes_arrays=True)
 def weighed_stiffness(m: Model, k: int, out: Floats, width: int) -> None:
-    """The same times the weight of the node at i, which makes it symmetric.
+    """Stiffness matrix of the nodes times the weight of the node at i, which makes it symmetric.
 
     Parameters
     ----------

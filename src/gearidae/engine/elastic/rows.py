@@ -108,7 +108,7 @@ def joined_at(m: Model, k: int, material: int) -> int:
 
 @compiled
 def first_unknown(m: Model, k: int) -> int:
-    """Index in the state of the first deflection of a history's pair, that of the middle."""
+    """Index in the state of the first deflection of a history's pair, of the middle node."""
     return MOTION + k * m.scene.nodes
 
 

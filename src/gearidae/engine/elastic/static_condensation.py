@@ -97,7 +97,7 @@ def condense_pair(
     t : float
         Time over tau.
     y : ndarray
-        State, with its deflections; those of the pair are set.
+        State, with its deflections; the pair's deflections are set.
     gap, rate, length : float
         The pair's gap, gap rate and contact length.
     """
@@ -153,7 +153,7 @@ def following_slope(m: Model, k: int, y: Floats, length: float, follow: Floats) 
 def _finish_pair(
     m: Model, k: int, known: bool, t: float, y: Floats, gap: float, rate: float, length: float
 ) -> None:
-    """Set a pair's deflections at the end of a step and note them; the parameters are those of `condense_pair`."""
+    """Set a pair's deflections at the end of a step and note them; parameters as for `condense_pair`."""
     settling = m.work.settling[k]
     if settling.evaluated == 0 or abs(settling.time - t) > ROUNDING * abs(t):
         condense_pair(m, k, known, t, y, gap, rate, length)

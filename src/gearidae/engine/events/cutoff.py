@@ -61,7 +61,7 @@ def note_within(m: Model, y: Floats) -> bool:
 
 @compiled_once(SOLVER)
 def begin_within(m: Model, y: Floats) -> None:
-    """Note the same at a start, where pairs may be counted anew."""
+    """Note which pairs are within the cut-off at a start, where pairs may be counted anew."""
     for k in range(m.scene.histories):
         m.work.within[k] = 0.0
     note_within(m, y)

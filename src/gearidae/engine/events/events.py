@@ -91,7 +91,7 @@ def mesh_guard(m: Model, t: float, y: Floats) -> float:
 def handle_mesh(
     m: Model, t: float, y: Floats, steps: tuple[float, float], events: Floats, count: int
 ) -> tuple[int, bool, bool]:
-    """Deal with the guards of mesh and gear that have fallen at t, before those of the pairs.
+    """Deal with the guards of mesh and gear that have fallen at t, before the guards of the pairs.
 
     Parameters
     ----------

@@ -35,7 +35,7 @@ _GOLDEN: Final = 0.5 * (3.0 - math.sqrt(5.0))
 
 @compiled
 def set_law_window(m: Model) -> None:
-    """Set the times between which laws are those of the present piece: from the last knot to the next stop."""
+    """Set the times between which the present piece of the laws holds: from the last knot to the next stop."""
     next_knot, last, coming = m.state.next_knot, m.scene.start, m.scene.end
     if next_knot > 0:
         last = m.tables[m.scene.knots_at + next_knot - 1]

@@ -57,7 +57,7 @@ def record(
 def record_contact(
     m: Model, y: Floats, events: Floats, count: int, what: tuple[float, float, int, int, float]
 ) -> int:
-    """Write an onset or a separation likewise, with the force of the pair at a state; count impacts of its flank."""
+    """Write an onset or a separation, with the force of the pair at a state; count impacts of its flank."""
     t, kind, pair, flank, rate = what
     if kind == _ONSET:
         m.state.passage[flank].impacts += 1

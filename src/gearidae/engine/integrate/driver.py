@@ -177,7 +177,7 @@ class Output(NamedTuple):
         checkpoint
             See `Block`.
         kept : tuple
-            EnergyBalance and extremes, likewise; see `gearidae.engine.setup.problem.Problem.kept`.
+            EnergyBalance and extremes, from `gearidae.engine.setup.problem.Problem.kept`.
         """
         driver = m.work.driver
         rows, events, passages = int(driver.rows), int(driver.events), int(driver.passages)

@@ -202,7 +202,7 @@ def find_root(s: Stepper, high: float, roughly: bool) -> None:
 
 @compiled
 def find_root_as_ida(s: Stepper, high: float) -> None:
-    """Find the same by IDA's rule."""
+    """Find the first root of the guard in a step by IDA's rule."""
     tolerance = rounding(s)
     search = s.m.work.search
     a, b, low = search.low_time, s.clock[0], search.low

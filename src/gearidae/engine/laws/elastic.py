@@ -112,7 +112,7 @@ def _power(
 
 @compiled_once(ELASTIC_PART)
 def _joining(m: Model, k: int, y: Floats, gap: float, value: tuple[Shares, Shares]) -> tuple[Shares, Shares]:
-    """Add the losses, with slopes as those of a rigid contact in proportion."""
+    """Add the losses, with slopes in proportion to a rigid contact's."""
     losses = nodes_losses(m, k, y, gap)
     a, a1 = _loss(m, gap, 0, losses[0])
     b, b1 = _loss(m, gap, 1, losses[1])

@@ -253,7 +253,7 @@ def solve_blocks(store: Floats, b: Floats, x: Floats) -> None:
 
 @compiled
 def dense_jacobian(m: Model, t: float, cj: float, y: Floats, store: Floats, out: Floats) -> None:
-    """The same Jacobian as a full matrix, row by row, for solvers that know no blocks; `store` is overwritten."""
+    """Jacobian of the residual as a full matrix, row by row, for solvers without blocks; `store` is overwritten."""
     assemble(m, t, cj, y, store)
     n = int(store[_NODES])
     size = _RHO + 2 * n + n * n

@@ -107,7 +107,7 @@ def follow_slopes(m: Model, t: float, y: Floats, ahead: float, later: Floats) ->
 
 @compiled(makes_arrays=True)
 def with_deflections(m: Model, y: Floats) -> Floats:
-    """Whole state to which deflections can be put: the same, or a copy if it is that of the motion alone."""
+    """Whole state to which deflections can be put: `y` itself, or a longer copy of a state of the motion alone."""
     if y.size == m.scene.states:
         return y
     whole = m.rows[m.scene.trial_at : m.scene.trial_at + m.scene.states]

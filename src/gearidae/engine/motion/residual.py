@@ -88,7 +88,7 @@ def jacobian(m: Model, t: float, cj: float, y: Floats, out: Floats) -> None:
 
 @compiled
 def write_jacobian(m: Model, cj: float, s: AccelerationSlopes, out: Floats) -> None:
-    """Write the same with given slopes of the accelerations."""
+    """Write the Jacobian of the residual, with given slopes of the accelerations."""
     out[:16] = 0.0
     out[0], out[1], out[3] = cj, -s.pinion_u, -s.gear_u
     out[4], out[5], out[7] = -1.0, cj - s.pinion_v, -s.gear_v

@@ -88,7 +88,7 @@ class AccelerationSlopes(NamedTuple):
     pinion_by_speed : float
         Slope in the pinion's own speed of the torque on it, which is in both its slopes.
     gear_by_travel : float
-        Slope of the gear's acceleration in its own travel, of the laws of its shaft, which is in that of the phase.
+        Slope of the gear's acceleration in its travel, of the laws of its shaft; the slope in the phase contains it.
     """
 
     pinion_u: float
@@ -120,7 +120,7 @@ def note_limits(m: Model, t: float, y: Floats) -> None:
 
 @compiled(inline=True)
 def acceleration_slopes(m: Model, y: Floats, mesh: MeshForces) -> AccelerationSlopes:
-    """Slopes of the accelerations, from those of the forces that `mesh_forces` has just summed.
+    """Slopes of the accelerations, from the slopes of the forces that `mesh_forces` has just summed.
 
     The slopes of the mesh's error are left out: it is small, and these only steer Newton's iteration. So are the slopes
     of a torque in angle and speed where its law says none: a shaft takes many steps to follow a mild law, and each

@@ -53,7 +53,7 @@ def begin_orbit(m: Model, t: float, y: Floats, yp: Floats) -> None:
 
 @compiled_once(FRICTION)
 def book_orbit(m: Model, t: float, y: Floats, yp: Floats) -> float:
-    """Add the work of a step to that of the drive; return its magnitude."""
+    """Add the work of the orbit in a step to the work of the drive; return its magnitude."""
     o, e = m.work.orbit, m.state.energy
     h, first, first_rate = t - o.work_time, o.power, o.power_rate
     begin_orbit(m, t, y, yp)

@@ -32,7 +32,7 @@ _KIND, _PAIR, _FLANK = EVENT.kind, EVENT.pair, EVENT.flank
 
 
 def _words(record: np.dtype, fields: Sequence[Quantity]) -> tuple[int, ...]:
-    """Index of each number of some fields among those of a record."""
+    """Index of each number of some fields among the numbers of a record."""
     assert record.fields is not None
     firsts = [record.fields[field.name][1] // 8 for field in fields]
     return tuple(

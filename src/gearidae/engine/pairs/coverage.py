@@ -79,7 +79,7 @@ def share_changes(m: Model, coast: int, pair: int, inside: float) -> tuple[Share
 
 @compiled(inline=True)
 def shares_of(m: Model, coast: int, pair: int, inside: float) -> Shares:
-    """Shares of the materials in a pair; the parameters are those of `share_changes`."""
+    """Shares of the materials in a pair; parameters as for `share_changes`."""
     return share_changes(m, coast, pair, inside)[0]
 
 

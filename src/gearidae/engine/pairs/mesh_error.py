@@ -42,7 +42,7 @@ class MeshError(NamedTuple):
     pinion, pinion_bend : float
         Its first two derivatives in the pinion's angle, over R1 and R1^2.
     gear, gear_bend : float
-        The same in the gear's angle, over R2 and R2^2.
+        Its first two derivatives in the gear's angle, over R2 and R2^2.
     rate, bend : float
         Its first two derivatives in time at fixed angles, which the orbit of the pinion in its hub makes.
     """

@@ -26,5 +26,5 @@ def angle_of_shaft(m: Model, shaft: int, u: float, phase: float) -> float:
 
 @compiled(inline=True)
 def torque_angle(m: Model, shaft: int, u: float, phase: float) -> float:
-    """The same for a torque that depends on the angle; 0 for one that does not."""
+    """Angle of a shaft for a torque that depends on it; 0 for one that does not."""
     return angle_of_shaft(m, shaft, u, phase) if m.scene.torque[shaft].takes_angle != 0 else 0.0

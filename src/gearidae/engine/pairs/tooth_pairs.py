@@ -320,7 +320,7 @@ def flank_gaps(m: Model, y: Floats) -> tuple[float, float, int]:
 
 @compiled
 def rigid_separation(m: Model, u: float, phase: float) -> float:
-    """Distance of the nearer flank of pairs on the path of contact; with errors of teeth that of the nearest pair."""
+    """Distance of the nearer flank of pairs on the path of contact; with errors of teeth, of the nearest pair."""
     if m.scene.pitch_errors == 0:
         return min(m.scene.nearest[DRIVE] - u, m.scene.nearest[COAST] + u)
     least = math.inf

@@ -338,7 +338,7 @@ def _add_pitch_errors(s: Record, tables: Tables, scene: GearScene) -> None:
 
 
 def _model(s: Record, tables: Tables, scale: list[float]) -> Model:
-    """Put the model together, and note where its changing rows are; `scale` is that of the motion's states."""
+    """Put the model together, and note where its changing rows are; `scale` weighs the motion's states."""
     nodes, histories = int(s.nodes), int(s.histories)
     s.pair_laws = laws_of_mesh(s)
     s.states = MOTION + nodes * histories

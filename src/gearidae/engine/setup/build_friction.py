@@ -94,7 +94,7 @@ _JOINTS = {"pinion hub": PINION_HUB, "gear hub": GEAR_HUB, "pin": PIN}
 
 
 def _add_ageing(s: Record, joint: Joint, base_radius: float) -> None:
-    """Set what the coefficient of a joint depends on; ways are those of the base circle."""
+    """Set what the coefficient of a joint depends on; ways are on the base circle."""
     friction, place = s.friction, _JOINTS[joint.name]
     friction.coefficient[place], friction.rise[place] = joint.coefficient, joint.rise
     if joint.rise > 0.0:
@@ -122,7 +122,7 @@ class Limits:
         self._loading = np.zeros((MATERIALS, 8 * N_LOADING))
 
     def add(self, s: Record, tables: Tables, material: int, surface: Surface, law: AsperityLaw) -> None:
-        """Add those of a material that the flanks have, whose force law has been laid out."""
+        """Add the limits of a material that the flanks have, whose force law has been laid out."""
         friction, force = s.friction, s.material[material]
         value = self._values[MATERIAL_NAMES[material]]
         if not self._needed or value == 0.0:

@@ -27,7 +27,7 @@ def _position(angle: float, play: float) -> int:
 
 @compiled
 def _side(m: Model, shaft: int, angle: float) -> int:
-    """Side on which the spring is in touch: within a step that of its beginning, so that the force has no corner."""
+    """Side on which the spring is in touch, within a step the one at its beginning, so that the force has no corner."""
     if m.work.elsewhere != 0:
         return _position(angle, m.scene.torque[shaft].spring_play)
     return int(m.state.shaft[shaft].spring_side)

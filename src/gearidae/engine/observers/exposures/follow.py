@@ -171,7 +171,7 @@ def event(m: Model, t: float, y: Floats, yp: Floats, event: PairEvent) -> None:
 
 @compiled
 def finish(m: Model, t: float, y: Floats, yp: Floats) -> None:
-    """Bring all sums up to an accepted time, those of contacts that are closing, too."""
+    """Bring all sums up to an accepted time, of contacts that are closing, too."""
     _follow(m, t, y, yp, True)
 
 

@@ -90,7 +90,7 @@ class FreeWay(NamedTuple):
     farthest : float
         Largest size of the travel [pb].
     mark, grown : float
-        The same where it last grew by a share, and when [s].
+        Size of the travel [pb] where it last grew by a share, and when [s].
     onset : float
         When they began to move [s]; 0 before.
     excess : float
@@ -191,7 +191,7 @@ class FreeGears:
         return float(drive_at(self._place, self._piece(t), t, (self._zero.position, self._zero.lead)))
 
     def bound(self, time: float) -> float:
-        """Bound of how far they have been until a time [pb], at no more cost than that of their torques at rest.
+        """Bound of how far they have been until a time [pb], at no more cost than of their torques at rest.
 
         What depends on the speed holds them back; of laws of a user, and of an angle, nothing is known.
         """

@@ -86,7 +86,7 @@ def slowest_period_at(place: int) -> float:
 
 @compiled
 def _enter_piece(m: Model, begin: float, end: float) -> tuple[int, int, int, float, float]:
-    """Set segments of schedules and the window of laws to a piece between two knots; return those of the run."""
+    """Set segments of schedules and the window of laws to a piece between two knots; return the run's own."""
     s, w = m.state, m.work
     kept = (s.segment[0], s.segment[1], s.segment[2], w.law_from, w.law_until)
     for which in range(SCHEDULES):
