@@ -116,7 +116,7 @@ def _beside(ds: xr.Dataset) -> tuple[dict[str, str], str]:
 
 def _made(
     file: netCDF4.Dataset, name: str, variable: xr.Variable, beside: str, has_gaps: bool, compress: bool
-) -> tuple[netCDF4.Variable, xr.Variable | NDArray[Any]]:
+) -> tuple[Any, xr.Variable | NDArray[Any]]:
     """Make a variable in a file, and its dimensions; with the values that it gets."""
     dtype: Any = variable.dtype
     values: xr.Variable | NDArray[Any] = variable
