@@ -72,7 +72,7 @@ def drawn(scene: gd.Scene, count: int, coverage: tuple[float, float], seed: int 
 def of(count: int, total: int) -> str:
     """Write a count with the 95 % interval of its share, Wilson's."""
     interval = binomtest(count, total).proportion_ci(method="wilson")
-    return f"{count} of {total} ({interval.low:.0%} to {interval.high:.0%})"
+    return f"{count} of {total} ({100.0 * interval.low:.0f} to {100.0 * interval.high:.0f} %)"
 
 
 def shown(torques: list[xr.Dataset]) -> str:
@@ -87,9 +87,8 @@ def shown(torques: list[xr.Dataset]) -> str:
     lines = ["| stage | holds most in | mean share of what adhesion takes |", "|---|---|---|"]
     shares = adhesion[held] / adhesion[held].sum("part")
     for mesh in MESHES:
-        share = shares.sel(part=f"adhesion of {mesh}").values
-        error = share.std(ddof=1) / np.sqrt(share.size)
-        lines.append(f"| {mesh} | {of(counts[mesh], len(torques))} | {share.mean():.0%} +- {error:.0%} |")
+        share = float(shares.sel(part=f"adhesion of {mesh}").mean())
+        lines.append(f"| {mesh} | {of(counts[mesh], len(torques))} | {100.0 * share:.0f} % |")
     lines.append(f"| none | {of(len(torques) - int(held.sum()), len(torques))} | |")
     low, middle, high = np.quantile(totals - dry, [0.1, 0.5, 0.9])
     several = int(((shares > 0.05).sum("part") > 1).sum())
