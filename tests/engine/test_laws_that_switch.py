@@ -43,7 +43,24 @@ def wanted_speed(t, angle, speed, p):
     return speed - p[1]
 
 
+def push(t, angle, speed, p):
+    return p[0] if speed < p[1] else 0.0
+
+
+def governor(t, speed, p):
+    """A slope, and nothing beyond the speed."""
+    return p[0] * max(p[1] - speed, 0.0)
+
+
+def rubbing_spring(t, angle, speed, p):
+    return -p[0] * (angle - p[2] * t) + (p[1] if speed < p[2] else 0.0)
+
+
 LAWS = {
+    "rubbing_spring": (rubbing_spring, 3, {}),
+    "push": (push, 2, {}),
+    "push_with_switch": (push, 2, {"switch": wanted_speed}),
+    "governor": (governor, 2, {}),
     "pulses": (pulses, 1, {}),
     "pulses_with_knots": (pulses, 1, {"knots": pulse_ends}),
     "sectors": (sectors, 2, {}),
@@ -167,6 +184,63 @@ def test_a_law_that_chatters_is_named(flight, name, way):
     assert run.status == "law_chatter"
     assert run.time[-1] < 2e-3
     assert "hysteresis" in run.message
+
+
+@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("name", ["push", "push_with_switch"])
+def test_a_law_that_a_small_force_drives_back_over_its_jump_chatters(name, way):
+    """The pinion is at its speed in flight, and closing contacts brake it by far less than the law pushes.
+
+    Many steps lie between two jumps: they grow on the way back and shrink before the jump. `reached` is when the first
+    asperities come into reach.
+    """
+    backend, method = way
+    touching = {"mesh.backlash": 4e-6, "initial.gap": 2e-6, "run.duration": 0.1, "run.samples": "off"}
+    scene = MOTION.replace(touching | {"drive.law": law(name, 5e-17, 7.0), "run.method": method})
+    run = solve(scene, backend=backend)
+    assert run.status == "law_chatter"
+    assert 0.056 < run.reached < 0.0568
+    assert run.statistics.steps < 500_000  # some seconds; a run that crawls takes millions
+
+
+def test_a_chattering_law_is_said_with_time_speed_and_what_helps():
+    """The speed is that of the last sample, of which there is one in 3 us."""
+    touching = {"mesh.backlash": 4e-6, "initial.gap": 2e-6, "run.duration": 0.1, "run.samples": 30_001}
+    with pytest.raises(gd.SolverError, match="hysteresis") as raised:
+        gd.simulate(MOTION.replace(touching | {"drive.law": law("push", 5e-17, 7.0)}))
+    assert raised.value.state["pinion_speed"] == pytest.approx(7.0, rel=1e-5)
+    assert "rtol" not in raised.value.advice
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_a_law_with_a_kink_at_its_speed_does_not_chatter(flight, way):
+    """In flight the pinion runs up to the kink, ``w = w0 - d exp(-k t / I)``, within the run to the tolerance."""
+    backend, method = way
+    slope, wanted = 1e-16, 6.5
+    changes = {"drive.law": law("governor", slope, wanted), "run.method": method, "run.rtol": 1e-7}
+    run = solve(flight.replace(changes), backend=backend)
+    speed, time = run.samples["pinion_speed"], run.time
+    expected = wanted - (wanted - speed[0]) * np.exp(-slope / I1 * time)
+    np.testing.assert_allclose(speed, expected, rtol=1e-5)
+    assert run.status == "finished"
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_a_law_that_a_vibration_passes_each_time_does_not_chatter(flight, way):
+    """80 jumps within 1.6 ms: of each vibration about a speed, the half against a torque p takes 2 p/k of its size."""
+    backend, method = way
+    stiffness, torque, mean, count = I1 * (2.0 * math.pi * 25e3) ** 2, 5e-18, 6.5, 40
+    changes = {
+        "drive.law": law("rubbing_spring", stiffness, torque, mean),
+        "run.samples": 1_601,
+        "run.duration": 1.6e-3,
+    }
+    run = solve(flight.replace(changes | {"run.method": method, "run.rtol": 1e-6}), backend=backend)
+    assert run.status == "finished"
+    omega = math.sqrt(stiffness / I1)
+    swing = (mean - run.samples["pinion_speed"][0]) / omega - 2.0 * count * torque / stiffness
+    late = run.samples["pinion_speed"][-160:] - mean  # four vibrations
+    assert np.ptp(late) == pytest.approx(2.0 * omega * swing, rel=1e-2)
 
 
 def test_the_largest_step_bounds_steps(flight):

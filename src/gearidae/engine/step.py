@@ -282,11 +282,11 @@ def residual_of_attempt(m: Model, t: float, y: Floats, yp: Floats, out: Floats) 
     residual(m, t, y, yp, out)
     if m.scene.law_watched == 0 or t <= m.work.adams.time:
         return
-    jumps, steps = m.work.law_jumps, m.work.law_steps
-    if misses_laws(m, t, y):
+    if misses_laws(m, t, y, False):
+        # an iterate of an accepted step is no jump more; an attempt that fails is one, of a law that chatters
+        note_law_jump(m, m.work.adams.time, m.work.adams.state, False)
         for j in range(out.size):
             out[j] = math.nan
-    m.work.law_jumps, m.work.law_steps = jumps, steps  # which an accepted step counts
 
 
 @compiled(inline=True)
@@ -366,7 +366,7 @@ def _passes_jump(n: int, m: Model, attempt: Attempt) -> bool:
     """Whether the step that has been solved passes over a law's jump."""
     for j in range(n):
         attempt.y[j] = m.work.adams.new_state[j]
-    return misses_laws(m, attempt.t, attempt.y)
+    return misses_laws(m, attempt.t, attempt.y, True)
 
 
 # -- locate ----------------------------------------------------------------------------------------------------------
@@ -481,7 +481,7 @@ def finish_step(
         m.state.progress.flight_steps += 1
     if m.scene.law_watched != 0 and m.work.adams.native_newton == 0:
         note_step_of_laws(m, t, y)
-    if m.work.law_jumps != 0 and laws_chatter(m):
+    if m.work.law_jumps != 0 and laws_chatter(m, y):
         error = LAW_CHATTER
     afresh = (
         change_wanted(m, y, yp)
@@ -630,7 +630,7 @@ def switch(
         count, jumped = switch_shafts(m, t, y, events, count)
         restart |= jumped
     if m.scene.law_switches != 0 and set_law_sides(m, t, y):
-        note_law_jump(m)
+        note_law_jump(m, t, y, True)
         restart = True
     if watches_cutoff(m):
         restart |= note_within(m, y)

@@ -98,6 +98,8 @@ HALF_PITCH = 0.5
 """Pitches that a gear must move from a zero of its speed to have left it."""
 NOTICED = 0.1
 """Pitches that free gears must have moved for a standstill of any duration, and for one that sticks."""
+SWING = 2.0 * NOTICED
+"""Pitches by which free gears may be ahead of a gear that turns round; 0.14 where it rings before it follows them."""
 SHARE = 0.01
 """Of the time since the start: a standstill in which free gears have moved less lasts longer than this."""
 SETTLED_WITHIN = 1.0
@@ -145,7 +147,9 @@ def turns_round(since: float, until: float, free_advance: float, earlier: Iterab
     """Whether a gear that stands from a zero of its speed only turns round there.
 
     It has followed free gears from an earlier zero, for longer than since. Until the pinion has passed the
-    backlash, free gears that swing back are ahead of it by a small part of a pitch.
+    backlash, free gears that swing back are ahead of it by a small part of a pitch. Under a constant torque no gear
+    that sticks is taken for one: when free gears from rest have turned by `NOTICED`, those from a start within half a
+    pitch have gone more than twice as far as the gear.
 
     Parameters
     ----------
@@ -156,7 +160,7 @@ def turns_round(since: float, until: float, free_advance: float, earlier: Iterab
     earlier : iterable of Followed
         Earlier zeros from which the gear has stayed within half a pitch.
     """
-    if not 0.0 < free_advance < NOTICED:
+    if not 0.0 < free_advance < SWING:
         return False
     return any(
         before.advance >= 0.5 * before.free_advance >= 0.5 * NOTICED and until - since < since - before.onset

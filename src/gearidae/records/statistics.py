@@ -17,7 +17,7 @@ class Ending(Enum):
     CHATTER = ("chatter", "events followed each other while the time did not advance")
     LAW_CHATTER = (
         "law_chatter",
-        "a registered torque law chatters, it switches every few steps: give it a hysteresis or a slope, not a jump",
+        "a registered torque law chatters at its own switch: give it a hysteresis, or a slope in place of its jump",
     )
     MANY_EVENTS = (
         "many_events",

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 import numpy as np
 
 from gearidae.errors import SceneError, SolverError
-from gearidae.records import Block, EventKind, Events, Flank, Solution, Statistics
+from gearidae.records import Block, Ending, EventKind, Events, Flank, Solution, Statistics
 from gearidae.records.standing import Holding
 from gearidae.records.train_results import AnySolution, TrainSolution
 from gearidae.scene import Scene, TrainScene, is_long_train, require_gears
@@ -36,7 +36,8 @@ _LEAST_MEMORY = 1.25e9
 """Addresses [bytes] that the solver's libraries and threads take; in memory there is a fourth of it."""
 FAILS: Final = "fails: "
 """Beginning of the word for a failed run of a study, before its message; such a run does not end a study of several."""
-_STATE = ("gear_speed", "transmission_error", "drive_gap", "height", "speed", "force")
+_LAW_CHATTER = Ending.LAW_CHATTER.status
+_STATE = ("gear_speed", "pinion_speed", "transmission_error", "drive_gap", "height", "speed", "force")
 
 
 def prepare(
@@ -262,7 +263,9 @@ def early_end(ds: xr.Dataset, time: float, message: str = "", advice: str = _ADV
     """
     state: dict[str, float] = {}
     sampled = None
-    if advice == _ADVICE and float(ds.attrs.get("rtol", 1.0)) < _NEAR_ROUNDING:
+    if advice == _ADVICE and ds.attrs["status"] == _LAW_CHATTER:
+        advice = _ADVICE.partition("; ")[2]  # another tolerance does not help, and the message says what does
+    elif advice == _ADVICE and float(ds.attrs.get("rtol", 1.0)) < _NEAR_ROUNDING:
         advice = f"such a tolerance is near rounding: try run.rtol = {_NEAR_ROUNDING:g}; {_ADVICE.partition('; ')[2]}"
     if ds.sizes["time"]:
         last = ds.isel(time=-1)

@@ -11,7 +11,7 @@ from gearidae.engine.events.record import record
 from gearidae.engine.model.state import DRIVE, MOTION, PHASE, Floats, Model, U, V, W
 from gearidae.engine.pairs.mesh_error import pinion_speed
 from gearidae.engine.pairs.shaft_angle import torque_angle
-from gearidae.laws.shaft.own import SHIFT, law_misfit, law_value, on_its_side, switch_value
+from gearidae.laws.shaft.own import SHIFT, jumps_with_speed, law_jump, law_value, on_its_side, switch_value
 from gearidae.laws.shafts import guard, switch
 from gearidae.records import Flank
 
@@ -25,6 +25,11 @@ JUMPS_HIGH: Final = 300
 """Jumps of laws in close succession, beyond which they chatter."""
 APART: Final = 12
 """Steps without a jump after which the next is no succession; a start takes as many to reach its step length."""
+HOVERS: Final = 10.0
+"""Tolerances of a speed about that of the last jump, within which the next is a succession after any number of steps.
+
+A small force drives the shaft back over a jump of a large one: steps grow on the way back and shrink before the jump,
+some 40 from one to the next. A vibration that passes a jump goes farther, or is beyond what the tolerance resolves."""
 _PLACES: Final = (0.0, *sorted(k * 0.5 * (math.sqrt(5.0) - 1.0) % 1.0 for k in range(1, 13)), 1.0)
 """Shares of a step at which the function of a law's switch is evaluated: multiples of the golden section, so that no
 wave has the same phase at all of them."""
@@ -113,19 +118,48 @@ def set_law_sides(m: Model, t: float, y: Floats) -> bool:
 
 
 @compiled
-def note_law_jump(m: Model) -> None:
-    """Count a jump of a law: a zero of its own function, or one within a step that is tried."""
-    m.work.law_jumps += 1
-    m.work.law_steps = 0
+def note_law_jump(m: Model, t: float, y: Floats, always: bool) -> None:
+    """Count a jump of a law: a zero of its own function, or one within a step that is tried from this state.
+
+    Laws of the time or the angle may jump many times while the speed stays, and count only if their jump may be beyond
+    the tolerance (`always`). A law that jumps as a function of the speed alone, within `HOVERS` of the shaft's speed,
+    counts however short the step is.
+    """
+    speeds = math.nan, math.nan
+    for shaft in range(2):
+        angle, speed = torque_angle(m, shaft, y[U], y[PHASE]), _speed(m, shaft, y)
+        about = HOVERS / _weight(m, shaft)
+        if m.work.torque_law[shaft] != 0 and jumps_with_speed(
+            m, shaft, t, angle, (speed - about, speed + about)
+        ):
+            speeds = (speed, speeds[1]) if shaft == 0 else (speeds[0], speed)
+    if always or speeds[0] == speeds[0] or speeds[1] == speeds[1]:
+        m.work.law_jumps += 1
+        m.work.law_steps = 0
+        m.work.law_speed[0], m.work.law_speed[1] = speeds
 
 
 @compiled(inline=True)
-def laws_chatter(m: Model) -> bool:
+def _weight(m: Model, shaft: int) -> float:
+    """One over the tolerance of a shaft's speed."""
+    return float(m.rows[m.scene.error_weights_at + (V if shaft == DRIVE else W)])
+
+
+@compiled(inline=True)
+def laws_chatter(m: Model, y: Floats) -> bool:
     """Count an accepted step; whether laws have jumped too often without a while between."""
     m.work.law_steps += 1
-    if m.work.law_steps > APART:
+    if m.work.law_steps > APART and not _hovers(m, y):
         m.work.law_jumps = 0
     return bool(m.work.law_jumps > JUMPS_HIGH)
+
+
+@compiled
+def _hovers(m: Model, y: Floats) -> bool:
+    """Whether a shaft has still the speed at which its law has last jumped."""
+    first, second = m.work.law_speed[0], m.work.law_speed[1]
+    near = HOVERS / _weight(m, 0), HOVERS / _weight(m, 1)
+    return bool(abs(_speed(m, 0, y) - first) < near[0] or abs(_speed(m, 1, y) - second) < near[1])
 
 
 @compiled
@@ -202,15 +236,15 @@ def note_step_of_laws(m: Model, t: float, y: Floats) -> None:
     """Note where the next step begins, where IDA iterates by itself; a jump that this one has kept small is counted."""
     a = m.work.adams
     if t > a.time:
-        misses_laws(m, t, y)
+        misses_laws(m, t, y, True)
     a.time = t
     for j in range(MOTION):
         a.state[j] = y[j]
 
 
 @compiled_once(SOLVER)
-def misses_laws(m: Model, t: float, y: Floats) -> bool:
-    """Whether a step that is tried passes over a law's jump on its way to a time and a state.
+def misses_laws(m: Model, t: float, y: Floats, counts: bool) -> bool:
+    """Whether a step that is tried passes over a law's jump on its way to a time and a state; `counts` its jumps, too.
 
     Of a law that says nothing of its jumps, the impulse that may be missed must be beyond the tolerance. Of one that
     has a function with zeros there, two zeros within the step count. A single one is found as a root; until there the
@@ -223,14 +257,14 @@ def misses_laws(m: Model, t: float, y: Floats) -> bool:
         switches = m.work.torque_switch[shaft] != 0
         if m.scene.torque[shaft].law_unknown == 0 and not switches:
             continue
-        mass, state = (m.scene.pinion_inverse_mass, V) if shaft == DRIVE else (m.scene.gear_inverse_mass, W)
-        mass *= m.rows[m.scene.error_weights_at + state]
+        mass = m.scene.pinion_inverse_mass if shaft == DRIVE else m.scene.gear_inverse_mass
+        mass *= _weight(m, shaft)
         first = torque_angle(m, shaft, a.state[U], a.state[PHASE]), _speed(m, shaft, a.state)
         last = torque_angle(m, shaft, y[U], y[PHASE]), _speed(m, shaft, y)
         if not switches:
-            missed = law_misfit(m, shaft, a.time, h, first, last) * mass
-            if missed > NOTED * SHARE:
-                note_law_jump(m)
+            missed = h * law_jump(m, shaft, a.time, h, first, last) * mass
+            if counts and missed > 0.0:
+                note_law_jump(m, a.time, a.state, missed > NOTED * SHARE)
             if missed > SHARE:
                 return True
         elif on_its_side(m, shaft, t, last[0], last[1]):

@@ -216,7 +216,10 @@ _STANDING_FIELDS: Final = (
     Quantity("near_position", "where it was then", PITCHES),
     Quantity("slip_time", "when dry friction last let go", SECONDS),
     Quantity("slip_position", "where the gear was then", PITCHES),
-    flag("slip_from_rest", "1 if dry friction held the gear until then"),
+    flag(
+        "slip_from_rest",
+        "1 if dry friction held the gear at rest until then, or until a slip near that place",
+    ),
     Quantity("leave_time", "when the gear last left half a pitch from the first zero", SECONDS),
     Quantity("leave_position", "where it was then", PITCHES),
 )

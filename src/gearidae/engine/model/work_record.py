@@ -341,6 +341,11 @@ WORK: Final = record_type(
     ("law_until", REAL),  # and of the next, just before it; 0 outside a run [tau]
     ("law_jumps", INT),  # jumps of laws in close succession [1]
     ("law_steps", INT),  # steps since the last of them [1]
+    (
+        "law_speed",
+        REAL,
+        (2,),
+    ),  # of a shaft at its law's last jump, if its law jumps with the speed; else not a number
     ("contact", CONTACT, (2 * SLOTS_HIGH,)),  # of a population
     ("friction", FRICTION_WORK),  # of friction
     ("mesh_error", MESH_ERROR),  # of a mesh that has one

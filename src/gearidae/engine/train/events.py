@@ -116,7 +116,7 @@ def accept_all(tm: TrainModel, t: float, y: Floats) -> int:
             q = m.work.quadrature
             q.gear_speed, q.gear_acceleration = tm.own[W], tm.rates[12, n + mesh.b] * unit
             adhesion_loss.step(m, time, tm.own, q.gear_acceleration)
-        if m.scene.law_switches != 0 and laws_chatter(m):
+        if m.scene.law_switches != 0 and laws_chatter(m, tm.own):
             tm.train[0].error = LAW_CHATTER
         flying += in_flight(m)
         beyond |= m.state.bound_exceeded != 0
@@ -142,7 +142,7 @@ def _switch_mesh(tm: TrainModel, k: int, m: Model, t: float, y: Floats, out: Tra
                 adhesion_loss.event(m, own, event.coast, event.pair, event.k, event.gap)
             count = take_event(m, time, own, event, few, count)
     if m.scene.law_switches != 0 and set_law_sides(m, time, own):
-        note_law_jump(m)
+        note_law_jump(m, time, own, True)
     if watches_cutoff(m):
         note_within(m, own)
     if crossed and tm.train[0].balance != 0:

@@ -35,6 +35,8 @@ JUMP_LOOKS: Final = 100_000
 """Times in a run at which a law that says nothing is looked at for jumps in time."""
 HALVINGS: Final = 100
 """Of the time between two looks, at most: a jump is then known to rounding."""
+SPEED_HALVINGS: Final = 8
+"""Of a range of speeds: a slope has then a 256th of its change."""
 LEAST_JUMP: Final = 1e-6
 """Change between two looks, over the range of the law, below which it is no jump but rounding."""
 SHIFT: Final = 8.0 * float(np.finfo(float).eps)
@@ -355,17 +357,17 @@ def law_force_rate(
 
 
 @compiled
-def law_misfit(
+def law_jump(
     m: Model, shaft: int, t: float, h: float, first: tuple[float, float], last: tuple[float, float]
 ) -> float:
-    """Impulse over the base radius that a step may miss of a shaft's law, which has a jump or a kink in it; 0 else.
+    """Range of a shaft's law (as `law_value`) on a straight way on which it has a jump or a kink; 0 where it has none.
 
     Parameters
     ----------
     m : Model
     shaft : int
     t, h : float
-        Beginning and length of the step, over tau.
+        Beginning and length of the way, over tau.
     first, last : tuple of two floats
         Angle [rad] and scaled speed of the shaft at both ends.
     """
@@ -382,7 +384,26 @@ def law_misfit(
         low, high = min(low, value), max(high, value)
         fourth += sign * (1.0 if i in (0, 4) else 6.0 if i == 2 else 4.0) * value
         sign = -sign
-    return h * (high - low) if abs(fourth) > MISFIT * (high - low) else 0.0
+    return high - low if abs(fourth) > MISFIT * (high - low) else 0.0
+
+
+@compiled
+def jumps_with_speed(m: Model, shaft: int, t: float, angle: float, between: tuple[float, float]) -> bool:
+    """Whether a shaft's law jumps between two scaled speeds, as a function of the speed alone.
+
+    Bisection towards the larger change: of a jump it stays what it is, of a slope or a kink it shrinks with the way.
+    """
+    low, high = between
+    below, above = law_value(m, shaft, t, angle, low), law_value(m, shaft, t, angle, high)
+    change = abs(above - below)
+    for _ in range(SPEED_HALVINGS):
+        middle = 0.5 * (low + high)
+        value = law_value(m, shaft, t, angle, middle)
+        if abs(value - below) > abs(above - value):
+            high, above = middle, value
+        else:
+            low, below = middle, value
+    return bool(abs(above - below) > 0.5 * change)
 
 
 # -- its verbs -------------------------------------------------------------------------------------------------------

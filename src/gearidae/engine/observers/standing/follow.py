@@ -90,15 +90,18 @@ def _sign(speed: float) -> int:
 def resume(m: Model, t: float, y: Floats) -> None:
     """Note that something has brought the gear to rest or turned it round at once, or that dry friction has let go.
 
-    A change of what is held that is not the rest of all of it lets something go.
+    A change of what is held that is not the rest of all of it lets something go. A gear that comes away from rest may
+    stick and slip for some vibrations yet: what lets it go near that place has held it since the rest.
     """
     s, sign, position = m.state.standing, _sign(y[W]), y[PHASE] + m.state.turns
     if s.way != 0 and sign != s.way:
         add_zero(m, t, position, y, False)
     s.way = sign
     if s.held != FREE and m.state.hold != s.held and m.state.hold != AT_REST:
+        held = s.held == AT_REST or s.held == HELD_GEAR
+        again = s.slip_from_rest != 0 and abs(position - s.slip_position) <= NEAR * m.scene.phase_rate
         s.slip_time, s.slip_position = t * m.scene.time_unit, position
-        s.slip_from_rest = 1 if s.held == AT_REST or s.held == HELD_GEAR else 0
+        s.slip_from_rest = 1 if held or again else 0
     s.held = m.state.hold
 
 
