@@ -4,7 +4,7 @@ Runs the whole benchmark (some fifty minutes), writes ``benchmarks/results/``, r
 of ``docs/benchmarks.md`` and the pictures ``docs/images/work_precision_*.png``. ``--quick`` measures little, to see
 that it works; ``--tables`` only writes the page again from the last results. A part alone: ``--long`` lets a million
 teeth pass (some minutes), ``--start-stop`` measures start-ups and brakings (half an hour), ``--trains`` trains of
-several meshes (a minute).
+several meshes (a minute), ``--defaults`` what each default of a run costs (some minutes).
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import sys
 from pathlib import Path
 
 from gearidae_bench import Result, Settings, find_scenes, run_benchmark
+from gearidae_bench.default_cost import default_scenes, default_table, measure_defaults
 from gearidae_bench.files import write_result
 from gearidae_bench.long import long_page, measure_long
 from gearidae_bench.start_stop import StartStop, measure_start_stop, start_stop_scenes
@@ -22,8 +23,8 @@ from gearidae_bench.train_cost import cost_table, measure_trains
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "benchmarks.md"
 RESULTS = ROOT / "benchmarks" / "results"
-ROUNDS = 21
-"""Of trains and a pair, in turn."""
+ROUNDS, TRAIN_ROUNDS = 7, 21
+"""Of the costs of defaults, and of trains and a pair, in turn."""
 
 
 def main(arguments: list[str]) -> None:
@@ -35,6 +36,10 @@ def main(arguments: list[str]) -> None:
         return
     if "--trains" in arguments:
         _trains()
+        return
+    if "--defaults" in arguments:
+        (RESULTS / "defaults.md").write_text(default_table(measure_defaults(default_scenes(), ROUNDS)))
+        _insert("defaults", RESULTS / "defaults.md")
         return
     if "--start-stop" in arguments:
         _start_stop(measure_start_stop(start_stop_scenes(), report=_say))
@@ -59,7 +64,7 @@ def _say(words: str) -> None:
 
 def _trains() -> None:
     """Measure what trains cost over a pair, and renew their table."""
-    (RESULTS / "trains.md").write_text(cost_table(measure_trains(ROUNDS)))
+    (RESULTS / "trains.md").write_text(cost_table(measure_trains(TRAIN_ROUNDS)))
     _insert("trains", RESULTS / "trains.md")
 
 
