@@ -25,7 +25,14 @@ MESH_SAMPLES: Final = ("mesh_force", "transmission_error", "drive_gap", "coast_g
 COMMON_SAMPLES: Final = ("drive_torque", "load_torque", "pin_load")
 """Samples of the train, shape (n,): [N m], [N m] and [N]."""
 WORKS_OF_SHAFTS: Final = ("hub_loss", "hub_sliding", "resistance_loss", "drag_loss")
-WORKS_OF_MESHES: Final = ("adhesion_loss", "damping_loss", "film_loss", "work_in", "work_out")
+WORKS_OF_MESHES: Final = (
+    "adhesion_loss",
+    "damping_loss",
+    "film_loss",
+    "friction_loss",
+    "work_in",
+    "work_out",
+)
 """Totals that are followed with the energy balance; NaN without it, as all of `ENERGIES` are."""
 SHAFT_TOTALS: Final = ("min_speed", "max_speed", *WORKS_OF_SHAFTS, "rest_time")
 """Totals of each shaft: [rad/s], [J], the load integrated over the way of the hub [N m], [J], [J] and [s]."""
@@ -185,6 +192,8 @@ class TrainSolution:
         Names of what holds the judged shaft.
     checkpoint : ndarray of 8-byte words, optional
         State at the end, from which another run can go on; None where there is none.
+    flanks_held : tuple of int, optional
+        Numbers of the meshes of which friction holds a pair of flanks at the end.
     """
 
     shafts: tuple[str, ...]
@@ -205,6 +214,7 @@ class TrainSolution:
     extremes: Extremes | None = None
     held_by: tuple[str, ...] = ()
     checkpoint: Words | None = None
+    flanks_held: tuple[int, ...] = ()
 
     @classmethod
     def none(cls, shafts: Sequence[str], meshes: Sequence[str], status: str, message: str) -> TrainSolution:
@@ -239,6 +249,7 @@ def solution_of(
     start: float,
     statistics: Statistics,
     checkpoint: Words | None = None,
+    flanks_held: tuple[int, ...] = (),
 ) -> TrainSolution:
     """Put a solution together.
 
@@ -251,7 +262,7 @@ def solution_of(
     tables : sequence of ndarrays
         `TABLES`, as in a `TrainBlock`.
     totals : TrainTotals
-    status, message, reached, start, statistics, checkpoint
+    status, message, reached, start, statistics, checkpoint, flanks_held
         Of the solution.
     """
     samples, looks, zeros, events, rests = tables
@@ -282,6 +293,7 @@ def solution_of(
         start=start,
         statistics=statistics,
         checkpoint=checkpoint,
+        flanks_held=flanks_held,
     )
 
 

@@ -6,7 +6,6 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Final
 
 from gearidae.errors import SceneError
-from gearidae.scene.friction import has_flank_friction
 from gearidae.scene.gears import Gears
 from gearidae.scene.shafts import HUB_KEYS
 from gearidae.scene.torque import Drive, Load
@@ -141,11 +140,3 @@ def check_train(scene: TrainScene) -> None:
     for there, key, value, reason in refused:
         if there:
             raise SceneError(key, value, f"cannot be combined with several meshes: {reason}")
-    for mesh, pair in zip(scene.train.meshes, pairs, strict=True):
-        if has_flank_friction(pair):
-            reason = "rest would need the friction of all flanks at once"
-            raise SceneError(
-                "contact.friction",
-                contact.friction,
-                f"cannot be combined with several meshes ({mesh.name}): {reason}",
-            )

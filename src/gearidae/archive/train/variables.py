@@ -92,6 +92,7 @@ MESH_TOTALS: Final[Mapping[str, Variable]] = {
             ("adhesion_loss", "energy lost to adhesion in the mesh"),
             ("damping_loss", "energy lost to the viscous damping of the mesh"),
             ("film_loss", "energy lost to films of gas in the mesh"),
+            ("friction_loss", "energy lost to friction of the flanks"),
             ("work_in", "work of the driver on the mesh"),
             ("work_out", "work of the mesh on its driven gear"),
         )

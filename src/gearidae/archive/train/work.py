@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from gearidae.records.train_results import TrainSolution
     from gearidae.scene import TrainScene
 
-MESH_LOSSES = ("adhesion_loss", "damping_loss", "film_loss")
+MESH_LOSSES = ("adhesion_loss", "damping_loss", "film_loss", "friction_loss")
 SHAFT_LOSSES = ("hub_loss", "resistance_loss", "drag_loss")
 
 
@@ -50,7 +50,7 @@ def work_shares(ds: xr.Dataset) -> list[Share]:
     Returns
     -------
     list of Share
-        From the drive to the load: each mesh (adhesion, damping, film), each hub, dry resistance and drags of each
+        From the drive to the load: each mesh (adhesion, damping, film, friction), each hub, dry resistance and drags of each
         shaft, pin, load, the change of kinetic energy and of that in contacts, less the work of the changing radius.
 
     Raises

@@ -18,10 +18,12 @@ from gearidae.engine.setup.build import make_problem
 from gearidae.engine.setup.checkpoint import scene_digest
 from gearidae.engine.setup.problem import Problem
 from gearidae.engine.setup.start import AT_ONCE, Start
+from gearidae.engine.train.flanks import NO_FORCE
 from gearidae.engine.train.layout import TrainModel, blank_train
 from gearidae.engine.train.loop import LOOKS
 from gearidae.engine.train.observe import kinetic_energy_of, write_stored
 from gearidae.engine.train.start import begin_train
+from gearidae.engine.train.sticking import STILL
 from gearidae.errors import SceneError
 from gearidae.records import first_sample
 from gearidae.scene import Drive, GearScene, Load
@@ -90,7 +92,9 @@ def make_train(scene: TrainScene, start: Start = AT_ONCE) -> TrainProblem:
     _refuse(scene, train)
     pairs, problems = _pairs(scene, train, Start(start.time))
     addresses = tuple(_alone(problem.model) for problem in problems)
-    tm = blank_train(len(train.shafts), len(train.meshes))
+    rubbing = [problem.model.scene for problem in problems if problem.model.scene.friction.flanks != 0]
+    histories = sum(int(s.histories) for s in rubbing)
+    tm = blank_train(len(train.shafts), len(train.meshes), histories)
     _add_meshes(tm, scene, train, problems, addresses)
     _add_shafts(tm, scene, train)
     _add_train(tm, scene, train, problems, start.time)
@@ -212,6 +216,11 @@ def _add_meshes(
             x, y = math.sin(alpha), way * sense * math.cos(alpha)
             record[f"{side}_x"] = math.cos(mesh.angle) * x - math.sin(mesh.angle) * y
             record[f"{side}_y"] = math.sin(mesh.angle) * x + math.cos(mesh.angle) * y
+        for side, way in (("rub", 1.0), ("coast_rub", -1.0)):
+            x, y = way * math.cos(alpha), -sense * math.sin(alpha)
+            record[f"{side}_x"] = math.cos(mesh.angle) * x - math.sin(mesh.angle) * y
+            record[f"{side}_y"] = math.sin(mesh.angle) * x + math.cos(mesh.angle) * y
+        record["flanks"] = int(s.friction.flanks)
         record["radius_power"] = int(scene.run.balance and s.curvature_force == 0)
 
 
@@ -269,6 +278,7 @@ def _add_train(
     # histories go round: each keeps its place where all slots have gone by
     slots = max(int(problem.model.scene.slots) for problem in problems)
     record.period = whole * slots * math.ceil(TURNS_LOW / (whole * slots))
+    record.flanks, record.hubs = int(tm.meshes["flanks"].any()), int(tm.shafts["hub_arm"].any())
     record.balance, record.samples = int(run.balance), run.sample_count
     record.start, record.end = start, start + run.duration
     record.first_sample = first_sample(start, start + run.duration, run.sample_count)
@@ -302,6 +312,12 @@ def _add_tolerances(tm: TrainModel, scene: TrainScene, problems: tuple[Problem, 
     for i, own in enumerate(radii):
         tm.weights[i] = 1.0 / (rtol * min(angle for angle, _ in own))
         tm.weights[n + i] = tm.train[0].tau / (rtol * min(angle for angle, _ in own))
+    for mesh in tm.meshes:
+        for side, radius in (("a", "driver_radius"), ("b", "driven_radius")):
+            shaft, torque = tm.shafts[int(mesh[side])], NO_FORCE * float(mesh["force_unit"] * mesh[radius])
+            still = STILL * float(mesh["length_unit"] / (mesh[radius] * mesh["time_unit"]))
+            shaft["still"] = max(float(shaft["still"]), still)
+            shaft["no_torque"] = max(float(shaft["no_torque"]), torque)
     # a phase matters by the gap it opens where tip relief is steepest
     steepest = [
         float(mesh["ratio"]) * float(p.model.scene.relief_curvature * p.model.scene.reach)

@@ -33,6 +33,7 @@ from gearidae.engine.train.layout import TrainModel, TrainOutput
 from gearidae.engine.train.motion import mesh_state, motion
 from gearidae.engine.train.record import take_from_mesh
 from gearidae.engine.train.rest import any_held, rest_guard, switch_rest
+from gearidae.engine.train.sticking import sticking_guard, switch_sticking
 
 _TINY: Final = 1e-300
 ROOTS_HIGH: Final = 1_000
@@ -58,7 +59,7 @@ def train_guard(tm: TrainModel, t: float, y: Floats, evaluated: bool) -> float:
     Parameters
     ----------
     evaluated : bool
-        Whether the last evaluation of the motion was at this state, of which held shafts need it.
+        Whether the last evaluation of the motion was at this state, of which held shafts and friction need it.
     """
     train, least = tm.train[0], math.inf
     train.guards += 1
@@ -67,8 +68,10 @@ def train_guard(tm: TrainModel, t: float, y: Floats, evaluated: bool) -> float:
         m = model_at(mesh.place)
         mesh_state(tm, k, m, y, tm.own)
         least = min(least, mesh_guard(m, t / mesh.time_unit, tm.own))
-    if not evaluated and any_held(tm):
+    if not evaluated and (train.flanks != 0 or any_held(tm)):
         motion(tm, t, y, tm.rates[15])
+    if train.flanks != 0:
+        least = min(least, sticking_guard(tm, y))
     least = min(least, rest_guard(tm, y), train_way_left(tm, y))
     return least if least != 0.0 else _TINY
 
@@ -157,7 +160,7 @@ def switch_all(tm: TrainModel, t: float, y: Floats, out: TrainOutput) -> bool:
     for _ in range(1 + FALLEN_AT_ONCE):
         for k in range(len(tm.meshes)):
             _switch_mesh(tm, k, model_at(tm.meshes[k].place), t, y, out)
-        if switch_rest(tm, t, y, out):
+        if switch_sticking(tm, t, y, out) if train.flanks != 0 else switch_rest(tm, t, y, out):
             # what it holds up is behind it at once: a step that is too long would see the shaft come to rest again
             train.step = min(train.step, 0.05 * train.tau)
         if train_guard(tm, t, y, False) > 0.0:

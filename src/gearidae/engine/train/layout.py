@@ -23,6 +23,7 @@ from gearidae.arrays import Floats
 from gearidae.compiled import name_type
 from gearidae.engine.events.record import EVENT_NUMBERS, EVENTS_AT_ONCE
 from gearidae.engine.model.record_types import INT, REAL, record_type
+from gearidae.engine.train.box import BOX_ROWS
 
 SHAFT: Final = record_type(
     ("inertia", REAL),  # [kg m^2]
@@ -35,6 +36,8 @@ SHAFT: Final = record_type(
     ("hub_torque", REAL),  # of adhesion and axial load [N m]
     ("hub_radius", REAL),  # [m]
     ("begin", REAL),  # departure at the start [rad]
+    ("still", REAL),  # speed below which it counts as at rest beside flanks with friction [rad/s]
+    ("no_torque", REAL),  # torque that counts as none [N m]
     # state
     ("slip", REAL),  # direction of slip: 1, -1, or 0 of a shaft that is held
     ("rest_begin", REAL),  # since when it is held [s]
@@ -42,7 +45,11 @@ SHAFT: Final = record_type(
     ("min_speed", REAL),  # [rad/s]
     ("max_speed", REAL),  # [rad/s]
     # of the last evaluation
-    ("torque", REAL),  # without friction [N m]
+    ("torque", REAL),  # without its own friction [N m]
+    ("before", REAL),  # direction of slip before the decisions of one time
+    ("moving_torque", REAL),  # without the friction of pairs that roll [N m]
+    ("moving_x", REAL),  # force on its hub without that [N]
+    ("moving_y", REAL),
     ("limit", REAL),  # of friction [N m]
     ("load_x", REAL),  # force on its hub [N]
     ("load_y", REAL),
@@ -66,7 +73,12 @@ MESH: Final = record_type(
     ("drive_y", REAL),
     ("coast_x", REAL),  # and the coast flank
     ("coast_y", REAL),
+    ("rub_x", REAL),  # direction in which friction of the drive flank pushes the driver where that slides ahead
+    ("rub_y", REAL),
+    ("coast_rub_x", REAL),  # and of the coast flank
+    ("coast_rub_y", REAL),
     ("radius_power", INT),  # 1 if the power of the changing radius is followed
+    ("flanks", INT),  # 1 if its flanks have friction
     # state
     ("largest", REAL),  # mesh forces [N] and their times [s]
     ("largest_time", REAL),
@@ -95,6 +107,8 @@ TRAIN: Final = record_type(
         REAL,
     ),  # pitches of the load's gear after which all phases are whole, and their histories in place
     ("balance", INT),  # 1 if works and losses are followed
+    ("flanks", INT),  # 1 if the flanks of any mesh have friction
+    ("hubs", INT),  # 1 if the friction of any hub grows with its load
     ("start", REAL),  # [s]
     ("end", REAL),  # [s]
     ("samples", INT),
@@ -137,6 +151,21 @@ TRAIN: Final = record_type(
     ("dry", REAL),  # limit of the load's dry resistance [N m]
     ("drags", REAL),  # what acts on the load's shaft besides [N m]
     ("pin", REAL),  # force of the pin [N]
+    ("rolling", INT),  # tooth pairs that roll, which friction holds
+    ("elements", INT),  # those and, where there are any, the shafts that are held
+    ("rank", INT),  # of them, independent ones
+)
+
+ELEMENT: Final = record_type(
+    ("mesh", INT),  # of a pair; -1 of a shaft
+    ("history", INT),  # of the pair
+    ("a", INT),  # shafts; both the same of a shaft
+    ("b", INT),
+    ("first", REAL),  # its speed per speed of shaft a: r1 [m], or 1
+    ("second", REAL),  # and of shaft b: -r2 [m], or 0
+    ("bend", REAL),  # rate of its speed with shafts that keep theirs, less what errors have brought about [m/s^2]
+    ("x", REAL),  # direction in which the friction pushes the hub of shaft a
+    ("y", REAL),
 )
 
 OF_SHAFT: Final = 4
@@ -147,9 +176,9 @@ OF_TRAIN: Final = 4
 """Works of the train: of the drive, what dry resistance and drags of the load take, loss of the pin."""
 
 
-def works_of(shafts: int, meshes: int) -> int:
-    """Count the works that are integrated with the motion."""
-    return OF_SHAFT * shafts + OF_MESH * meshes + OF_TRAIN
+def works_of(shafts: int, meshes: int, flanks: bool = False) -> int:
+    """Count the works that are integrated with the motion; flanks with friction have one for each mesh, at the end."""
+    return OF_SHAFT * shafts + OF_MESH * meshes + OF_TRAIN + flanks * meshes
 
 
 class TrainModel(NamedTuple):
@@ -175,6 +204,10 @@ class TrainModel(NamedTuple):
         State of one mesh in its own units.
     few : ndarray, shape (n, EVENT_NUMBERS)
         Events of one mesh at one time.
+    elements : ndarray of records
+        `ELEMENT`: what is at rest beside flanks with friction.
+    gram, work, box : ndarray
+        See `gearidae.engine.train.box`; `box` has the forces in newtons of pairs, the torques in newton metres of shafts.
     """
 
     train: NDArray[Any]
@@ -188,11 +221,16 @@ class TrainModel(NamedTuple):
     weights: Floats
     own: Floats
     few: NDArray[np.float64]
+    elements: NDArray[Any]
+    gram: NDArray[np.float64]
+    work: NDArray[np.float64]
+    box: NDArray[np.float64]
 
 
-def blank_train(shafts: int, meshes: int) -> TrainModel:
-    """Room for a train."""
-    n = 2 * shafts + works_of(shafts, meshes)
+def blank_train(shafts: int, meshes: int, histories: int = 0) -> TrainModel:
+    """Room for a train; `histories` are all those of flanks with friction."""
+    n = 2 * shafts + works_of(shafts, meshes, histories > 0)
+    elements = shafts + histories if histories > 0 else 0
     return TrainModel(
         np.zeros(1, TRAIN),
         np.zeros(shafts, SHAFT),
@@ -205,6 +243,10 @@ def blank_train(shafts: int, meshes: int) -> TrainModel:
         np.zeros(2 * shafts),
         np.zeros(4),
         np.zeros((EVENTS_AT_ONCE, EVENT_NUMBERS)),
+        np.zeros(elements, ELEMENT),
+        np.zeros((elements, elements)),
+        np.zeros((elements, elements + 1)),
+        np.zeros((BOX_ROWS, elements)),
     )
 
 

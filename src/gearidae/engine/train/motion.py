@@ -4,7 +4,7 @@
                   - h_i s_i
 
 with the torques T of drive, load and drags, and the direction s in which a shaft slips; one that is held keeps its
-place. A mesh pushes its driven gear with its drive and coast flanks by the vector S, and its driver by -S. Hubs carry
+place. Friction of flanks comes beside these: `gearidae.engine.train.flanks`. A mesh pushes its driven gear with its drive and coast flanks by the vector S, and its driver by -S. Hubs carry
 
     N_i = | P_i + sum_{k: b=i} S_k - sum_{k: a=i} S_k |
 
@@ -25,7 +25,8 @@ from gearidae.engine.model.state import DRIVE, LOAD, PHASE, Model, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
 from gearidae.engine.pairs.mesh_error import MeshError, error_at
 from gearidae.engine.pairs.shaft_angle import torque_angle
-from gearidae.engine.train.layout import OF_MESH, OF_SHAFT, TrainModel
+from gearidae.engine.train.flanks import add_flank_friction, hold_elements, set_limit
+from gearidae.engine.train.layout import OF_MESH, OF_SHAFT, OF_TRAIN, TrainModel
 from gearidae.laws.shaft.own import law_force
 from gearidae.laws.shafts import acting, driving_force, is_constant, pinion_force
 
@@ -93,6 +94,11 @@ def _add_mesh(tm: TrainModel, k: int, t: float, y: Floats, dy: Floats) -> None:
     a, b = mesh.a, mesh.b
     into = (1.0 - e.pinion) * mesh.driver_radius * total * unit
     out = mesh.driven_radius * ((1.0 + e.gear) * total + sums.relief) * unit
+    rubbed = 0.0
+    if mesh.flanks != 0:
+        taken, given, rubbed = add_flank_friction(tm, k, m, t, y)
+        into += taken
+        out += given
     shafts[a].torque -= into
     shafts[b].torque += out
     x = (drive * mesh.drive_x + coast * mesh.coast_x) * unit
@@ -111,6 +117,8 @@ def _add_mesh(tm: TrainModel, k: int, t: float, y: Floats, dy: Floats) -> None:
         dy[first + 2] = (
             radius_power(m, t / mesh.time_unit, own, 0.0)[0] * power if mesh.radius_power != 0 else 0.0
         )
+        if tm.train[0].flanks != 0:
+            dy[2 * n + OF_SHAFT * n + OF_MESH * len(tm.meshes) + OF_TRAIN + k] = rubbed
 
 
 @compiled
@@ -152,6 +160,7 @@ def motion(tm: TrainModel, t: float, y: Floats, dy: Floats) -> None:
     """
     train, shafts, n = tm.train[0], tm.shafts, len(tm.shafts)
     train.evaluations += 1
+    train.elements = 0
     for i in range(n):
         shaft, w = shafts[i], y[n + i]
         shaft.torque = -(shaft.viscous + shaft.drag * abs(w)) * w
@@ -159,15 +168,11 @@ def motion(tm: TrainModel, t: float, y: Floats, dy: Floats) -> None:
     for k in range(len(tm.meshes)):
         _add_mesh(tm, k, t, y, dy)
     _add_torques(tm, t, y)
+    if train.flanks != 0:
+        hold_elements(tm, y, dy)
     for i in range(n):
         shaft, w = shafts[i], y[n + i]
-        shaft.hub = math.hypot(shaft.load_x, shaft.load_y)
-        hub = shaft.hub_arm * shaft.hub + shaft.hub_torque
-        shaft.limit = shaft.resistance + hub
-        if i == train.load:
-            shaft.limit += train.dry
-        if i == train.drive:
-            shaft.limit += train.pin_arm * train.pin
+        hub = set_limit(tm, i)
         free = shaft.slip != 0.0 or shaft.rubs == 0
         dy[n + i] = (shaft.torque - shaft.slip * shaft.limit) / shaft.inertia if free else 0.0
         dy[i] = w - shaft.ratio * y[n + train.load]

@@ -13,7 +13,7 @@ from gearidae.engine.model.state import PHASE, U
 from gearidae.engine.observers.adhesion_loss import joining_lag
 from gearidae.engine.pairs.tooth_pairs import flank_gaps, rigid_separation
 from gearidae.engine.train.formula import state_at
-from gearidae.engine.train.layout import OF_MESH, OF_SHAFT, OF_TRAIN, TrainModel
+from gearidae.engine.train.layout import OF_MESH, OF_SHAFT, TrainModel
 from gearidae.engine.train.motion import mesh_state, motion
 
 SHAFT_COLUMNS: Final = 4
@@ -222,8 +222,8 @@ def account(tm: TrainModel, y: Floats, new: Floats) -> None:
             at = first + OF_MESH * k + j
             train.throughput += abs(new[at] - y[at])
     first += OF_MESH * len(tm.meshes)
-    for j in range(OF_TRAIN):
-        train.throughput += abs(new[first + j] - y[first + j])
+    for at in range(first, y.size):  # of the train, and of flanks with friction
+        train.throughput += abs(new[at] - y[at])
     train.throughput += abs(kinetic - train.kinetic)
     train.peak_kinetic, train.kinetic = max(train.peak_kinetic, kinetic), kinetic
 

@@ -22,8 +22,8 @@ _REVERSAL = float(EventKind.SLIDING_REVERSAL)
 
 @compiled
 def any_held(tm: TrainModel) -> bool:
-    """Whether a shaft is held."""
-    held = 0
+    """Whether a shaft is held, or a tooth pair rolls."""
+    held = tm.train[0].elements
     for i in range(len(tm.shafts)):
         held += tm.shafts[i].rubs != 0 and tm.shafts[i].slip == 0.0
     return held > 0
@@ -33,12 +33,13 @@ def any_held(tm: TrainModel) -> bool:
 def rest_guard(tm: TrainModel, y: Floats) -> float:
     """Least of the guards of all shafts: the speed in the direction of slip, or what a held one can hold besides.
 
-    Of held shafts the torques are those of the last evaluation of the motion.
+    Of held shafts the torques are those of the last evaluation of the motion. Where pairs roll beside them, what can be
+    held besides is `gearidae.engine.train.sticking.sticking_guard`.
     """
     least, n = math.inf, len(tm.shafts)
     for i in range(n):
         shaft = tm.shafts[i]
-        if shaft.rubs != 0:
+        if shaft.rubs != 0 and (shaft.slip != 0.0 or tm.train[0].elements == 0):
             room = shaft.slip * y[n + i] if shaft.slip != 0.0 else shaft.limit - abs(shaft.torque)
             least = min(least, room)
     return least

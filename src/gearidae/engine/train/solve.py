@@ -17,7 +17,7 @@ from gearidae.engine.integrate.driver import ending_of_flag
 from gearidae.engine.setup.start import AT_ONCE, Start
 from gearidae.engine.train.build import TrainProblem, make_train
 from gearidae.engine.train.continuing import pack_train, restore_train, train_from
-from gearidae.engine.train.layout import OF_MESH, OF_SHAFT, TrainModel, TrainOutput
+from gearidae.engine.train.layout import OF_MESH, OF_SHAFT, OF_TRAIN, TrainModel, TrainOutput
 from gearidae.engine.train.loop import LOOKS, advance_train
 from gearidae.engine.train.motion import torque_slopes
 from gearidae.engine.train.observe import kinetic_energy_of, write_stored
@@ -263,7 +263,13 @@ def _solution(
         reached=float(train.time),
         start=float(train.start),
         statistics=statistics,
+        flanks_held=_flanks_held(tm),
     )
+
+
+def _flanks_held(tm: TrainModel) -> tuple[int, ...]:
+    """Numbers of the meshes of which friction holds a pair at the time reached."""
+    return tuple(sorted({int(element["mesh"]) for element in tm.elements[: tm.train[0].elements]} - {-1}))
 
 
 def _resting(tm: TrainModel) -> NDArray[np.float64]:
@@ -283,7 +289,9 @@ def _totals(problem: TrainProblem) -> TrainTotals:
     works = y[2 * n :]
     of_shafts = works[: OF_SHAFT * n].reshape(n, OF_SHAFT)
     of_meshes = works[OF_SHAFT * n : OF_SHAFT * n + OF_MESH * meshes].reshape(meshes, OF_MESH)
-    drive, dry, drags, pin = (float(x) for x in works[OF_SHAFT * n + OF_MESH * meshes :])
+    of_train = works[OF_SHAFT * n + OF_MESH * meshes :]
+    drive, dry, drags, pin = (float(x) for x in of_train[:OF_TRAIN])
+    rubbed = of_train[OF_TRAIN:].copy() if tm.train[0].flanks else np.zeros(meshes)
     held = np.array([bool(shaft["rubs"]) and shaft["slip"] == 0.0 for shaft in tm.shafts])
     rest = tm.shafts["rest_time"] + np.where(held, tm.train[0].time - tm.shafts["rest_begin"], 0.0)
     shaft_totals = {
@@ -309,11 +317,12 @@ def _totals(problem: TrainProblem) -> TrainTotals:
         "adhesion_loss": adhesion.copy(),
         "damping_loss": of_meshes[:, 0].copy(),
         "film_loss": of_meshes[:, 1].copy(),
+        "friction_loss": rubbed,
         "work_in": of_meshes[:, 3].copy(),
         "work_out": of_meshes[:, 4].copy(),
     }
     kinetic = float(kinetic_energy_of(tm, y)) - problem.kinetic
-    lost = of_shafts[:, [0, 2, 3]].sum() + of_meshes[:, :2].sum() + adhesion.sum() + dry + drags + pin
+    lost = of_shafts[:, [0, 2, 3]].sum() + of_meshes[:, :2].sum() + rubbed.sum() + adhesion.sum() + dry + drags + pin
     energy = {
         "drive_work": drive,
         "radius_work": float(radius.sum()),

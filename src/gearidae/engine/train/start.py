@@ -11,10 +11,12 @@ from gearidae.engine.events.law_switches import set_law_sides, set_law_window
 from gearidae.engine.model.addresses import model_at
 from gearidae.engine.model.state import U
 from gearidae.engine.observers import adhesion_loss
+from gearidae.engine.train.flanks import NO_CONVERGENCE
 from gearidae.engine.train.layout import TrainModel
 from gearidae.engine.train.motion import mesh_state, motion
 from gearidae.engine.train.observe import begin_extremes, kinetic_energy_of
 from gearidae.engine.train.rest import begin_rest
+from gearidae.engine.train.sticking import begin_sticking
 
 FIRST: Final = 1e-3
 """First step, of the fastest time of the meshes."""
@@ -35,6 +37,8 @@ def begin_train(tm: TrainModel) -> None:
         energy.adhesion_loss = energy.radius_work = 0.0
     take_up(tm)
     begin_rest(tm, t, y)
+    if train.flanks != 0 and not begin_sticking(tm, t, y):
+        train.error = NO_CONVERGENCE
     motion(tm, t, y, tm.rates[0])
     begin_extremes(tm, t, y)
     train.kinetic = train.peak_kinetic = train.throughput = kinetic_energy_of(tm, y)
