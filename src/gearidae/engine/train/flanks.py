@@ -129,8 +129,7 @@ def set_limit(tm: TrainModel, i: int) -> float:
 def hold_elements(tm: TrainModel, y: Floats, dy: Floats) -> None:
     """Find the frictions that keep all pairs rolling and all held shafts at rest, and add those of the pairs."""
     train, n = tm.train[0], len(tm.shafts)
-    train.rolling = train.elements
-    if train.rolling == 0:
+    if train.elements == 0:
         return
     for i in range(n):
         shaft = tm.shafts[i]

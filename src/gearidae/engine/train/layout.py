@@ -151,8 +151,7 @@ TRAIN: Final = record_type(
     ("dry", REAL),  # limit of the load's dry resistance [N m]
     ("drags", REAL),  # what acts on the load's shaft besides [N m]
     ("pin", REAL),  # force of the pin [N]
-    ("rolling", INT),  # tooth pairs that roll, which friction holds
-    ("elements", INT),  # those and, where there are any, the shafts that are held
+    ("elements", INT),  # tooth pairs that friction lets roll, and with any the shafts that are held
     ("rank", INT),  # of them, independent ones
 )
 

@@ -30,6 +30,7 @@ from gearidae.engine.train.box import (
 )
 from gearidae.engine.train.flanks import (
     NO_CONVERGENCE,
+    NO_FORCE,
     balance_frictions,
     pair_speeds,
     slide_of,
@@ -213,7 +214,7 @@ def _decide(tm: TrainModel, t: float, y: Floats) -> None:
     while _add_still(tm, y):
         _stop(tm, t, y)
     train = tm.train[0]
-    if train.rolling == 0:  # shafts alone, of which each is held by itself
+    if train.elements == 0:  # shafts alone, of which each is held by itself
         for i in range(len(tm.shafts)):
             shaft = tm.shafts[i]
             if shaft.rubs != 0 and shaft.slip == 0.0 and abs(shaft.torque) > shaft.limit:
@@ -261,17 +262,34 @@ def _stop(tm: TrainModel, t: float, y: Floats) -> None:
 
 @compiled
 def _add_still(tm: TrainModel, y: Floats) -> bool:
-    """Count what has a direction, but no speed, among what is at rest; whether there is any."""
-    n, added = len(tm.shafts), False
+    """Count what has a direction, but neither a speed nor an acceleration that way, among what is at rest.
+
+    Such are shafts and pairs that others keep at rest. What has just been let go has its acceleration, and stays out:
+    its speed, taken out again and again, would never grow. The rates of the state are those of the last evaluation.
+
+    Returns
+    -------
+    bool
+        Whether there is any.
+    """
+    n, added, rates = len(tm.shafts), False, tm.rates[0]
+    if tm.train[0].elements == 0:
+        return False
     for i in range(n):
         shaft = tm.shafts[i]
         if shaft.rubs != 0 and shaft.slip != 0.0 and abs(y[n + i]) <= shaft.still:
-            shaft.slip, added = 0.0, True
+            if shaft.slip * rates[n + i] <= SMALL * shaft.no_torque / shaft.inertia:
+                shaft.slip, added = 0.0, True
     for k in range(len(tm.meshes)):
-        m = model_at(tm.meshes[k].place)
-        for i in range(m.work.pair_forces.count if tm.meshes[k].flanks != 0 else 0):
+        mesh = tm.meshes[k]
+        m, a, b = model_at(mesh.place), tm.shafts[mesh.a], tm.shafts[mesh.b]
+        for i in range(m.work.pair_forces.count if mesh.flanks != 0 else 0):
             noted = m.work.pair_forces.pair[i]
             slide = slide_of(m, noted)
-            if slide != 0 and slide != STUCK and abs(_own_speed(tm, k, m, i, y)) <= STILL:
+            if slide == 0 or slide == STUCK or abs(_own_speed(tm, k, m, i, y)) > STILL:
+                continue
+            r1, r2, _ = pair_speeds(tm, k, m, noted, y)
+            small = SMALL * NO_FORCE * mesh.force_unit * (r1 * r1 / a.inertia + r2 * r2 / b.inertia)
+            if slide * (r1 * rates[n + mesh.a] - r2 * rates[n + mesh.b]) <= small:
                 m.state.history[noted.history].slide, added = STUCK, True
     return added
