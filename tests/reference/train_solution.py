@@ -90,6 +90,7 @@ def solved(scene, samples=1501):
             "adhesion_loss": zero_mesh,
             "damping_loss": damped,
             "film_loss": zero_mesh,
+            "friction_loss": zero_mesh,
             "work_in": over(force * into),
             "work_out": over(force * out),
         },

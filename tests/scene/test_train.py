@@ -251,10 +251,6 @@ REFUSED = {
         chain(contact={"bodies": "rigid", "roughness": "discrete"}),
         r"^contact\.roughness = discrete: cannot be combined with several meshes",
     ),
-    "flank friction": (
-        chain(contact={"bodies": "rigid", "friction": 0.1}),
-        r"^contact\.friction = 0\.1: cannot be combined with several meshes \(first\)",
-    ),
     "exposures": (
         chain(run={"duration": 1e-4, "exposures": 5}),
         r"^run\.exposures = 5: cannot be combined with several meshes",

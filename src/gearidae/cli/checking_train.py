@@ -10,6 +10,7 @@ import numpy as np
 from gearidae.cli.fact import Fact, Facts
 from gearidae.mesh.pair_contact import pair_contact
 from gearidae.mesh.train_modes import natural_frequencies
+from gearidae.runs.rubbing import flank_loss
 from gearidae.runs.train_statics import (
     hub_loads,
     mesh_forces,
@@ -17,6 +18,7 @@ from gearidae.runs.train_statics import (
     starting_torque,
     steady_speed,
 )
+from gearidae.scene.train_pair import rubbing_mesh
 
 if TYPE_CHECKING:
     from gearidae.arrays import Floats
@@ -65,6 +67,10 @@ def _mesh(scene: TrainScene, mesh: TrainMesh, force: float) -> Facts:
         yield Fact("equilibrium gap", f"{gap * 1e9:.4g} nm", "one pair at the pitch point", gap, "m")
         stiffness = contact.stiffness(gap)
         yield Fact("stiffness", f"{stiffness:.4g} N/m", "there", stiffness, "N/m")
+    loss = flank_loss(scene.pair(mesh.name), force)
+    if loss != 0.0 and not math.isnan(loss):
+        words = "of the work that arrives, at a constant force"
+        yield Fact("lost to flank friction", f"{100.0 * loss:.3g} %", words, loss, "1")
 
 
 def _speed(scene: TrainScene) -> Fact:
@@ -121,6 +127,8 @@ def _hubs(scene: TrainScene, forces: Floats) -> Facts:
         yield Fact("starting torque", "none", f"the hub of {locked} locks the train")
     elif math.isnan(torque):
         yield Fact("starting torque", "unknown", "a loop shares its load")
+    elif rubbing_mesh(scene) is not None:
+        yield Fact("starting torque", "unknown", "what friction of flanks holds is not unique")
     else:
         words = "of the drive: dry resistances and hubs, without the teeth"
         yield Fact("starting torque", f"{torque:.8g} N m", words, torque, "N m")

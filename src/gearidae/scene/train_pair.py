@@ -6,6 +6,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Final
 
 from gearidae.errors import SceneError
+from gearidae.scene.friction import has_flank_friction
 from gearidae.scene.gears import Gears
 from gearidae.scene.shafts import HUB_KEYS
 from gearidae.scene.torque import Drive, Load
@@ -108,6 +109,12 @@ def _train_key(mesh: TrainMesh, key: str, names: list[str]) -> str:
         ends = {"pinion_teeth": "driver", "gear_teeth": "driven", "pinion_base_radius": "module"}
         last = ends.get(last, last)
     return f"meshes.{mesh.name}.{last}" if table in ("gears", "mesh") else key
+
+
+def rubbing_mesh(scene: TrainScene) -> str | None:
+    """Name of the first mesh of a train whose flanks have friction, None if there is none."""
+    names = (mesh.name for mesh in scene.train.meshes)
+    return next((name for name in names if has_flank_friction(pair_of(scene, name))), None)
 
 
 def check_train(scene: TrainScene) -> None:

@@ -16,6 +16,7 @@ from gearidae.errors import SceneError
 from gearidae.runs.train_release import TrainRelease
 from gearidae.runs.train_statics import ratios, resistances, starting_torque
 from gearidae.scene.judged import judged_shaft
+from gearidae.scene.train_pair import rubbing_mesh
 from gearidae.studies.bracket import crossing
 from gearidae.studies.starting_ramp import Pitch
 
@@ -34,6 +35,9 @@ def require_static(scene: TrainScene) -> TrainScene:
     if loops := scene.train.loops:
         allowed = "must be left out: a loop shares its load by the compliance of its teeth"
         raise SceneError("meshes", f"(loop {', '.join(loops[0])})", allowed)
+    if (name := rubbing_mesh(scene)) is not None:
+        allowed = f"must be 0 ({name}): what friction of flanks holds is not unique, and a run with a slow ramp tells"
+        raise SceneError("contact.friction", scene.contact.friction, allowed)
     if scene.drive.law is not None:
         allowed = "must be left out: its force would load the hub of the drive"
         raise SceneError("drive.law.name", scene.drive.law.name, allowed)

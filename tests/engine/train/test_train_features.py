@@ -58,6 +58,14 @@ def _registered():
 
 LAW = {"name": "sectors_of_a_train", "parameters": [1.4e-11]}
 FEATURES = {
+    "friction": {"contact.friction": 0.3},
+    "friction and adhesion": {
+        "contact.asperity": "jkr",
+        **ADHERING,
+        "contact.friction": 0.3,
+        "coating.friction": 0.2,
+    },
+    "shear strength": {"contact.friction_law": "shear", "contact.shear_strength": 5e8},
     "film": {"mesh.film_damping": 2e-4, "mesh.film_gap": 2e-8},
     "jkr": {"contact.asperity": "jkr", **ADHERING},
     "dmt": {"contact.asperity": "dmt", **ADHERING},
@@ -133,6 +141,9 @@ def test_a_mesh_has_the_energies_and_extremes_of_the_pair(feature):
     for name in ("adhesion_loss", "damping_loss", "film_loss"):
         assert own[name][0] == pytest.approx(balance[name], rel=1e-6, abs=0.0), name
         assert own[name][1] == 0.0
+    rubbed = balance.drive_friction_loss + balance.coast_friction_loss
+    assert own["friction_loss"][0] == pytest.approx(rubbed, rel=1e-6, abs=0.0)
+    assert own["friction_loss"][1] == 0.0
     expected = {
         "drive_work": balance.drive_work,
         "load_work": balance.drag_loss + balance.dry_loss,

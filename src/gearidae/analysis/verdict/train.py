@@ -279,7 +279,7 @@ def _back(motion: _Motion, free: FreeTrain) -> dict[str, float]:
 def _holders(
     scene: TrainScene, solution: TrainSolution, free: FreeTrain, motion: _Motion, free_advance: float
 ) -> tuple[Holding, tuple[str, ...]]:
-    """What holds a train that stands: dry resistances alone if they suffice; else hubs at rest, and adhesion."""
+    """What holds a train that stands: dry resistances alone if they suffice; else hubs, flanks, adhesion."""
     train, held, holding = scene.train, [], Holding(0)
     names = list(scene.shafts)
     if free_advance == 0.0:
@@ -300,6 +300,9 @@ def _holders(
         if number in at_rest and shaft.hub is not None and shaft.hub.torque(1.0) > 0.0:
             holding |= Holding.HUB_FRICTION
             held.append(f"hub friction of {name}")
+    for number in solution.flanks_held:
+        holding |= Holding.FLANK_FRICTION
+        held.append(f"flank friction of {train.meshes[number].name}")
     for name in _adhering(scene, solution):
         holding |= Holding.ADHESION
         held.append(f"adhesion in {name}")
