@@ -50,7 +50,7 @@ def test_accelerations_are_those_of_least_squares_with_bounds(elements):
     """Elements that outnumber the shafts have no unique frictions: the accelerations are unique."""
     for seed in range(40):
         inertia, levers, torque, limit = programme(seed, 3, elements)
-        box, mine = solved(inertia, levers, torque, limit)
+        _, mine = solved(inertia, levers, torque, limit)
         root = np.sqrt(inertia)
         wide = np.maximum(limit, 1e-30)  # SciPy wants bounds apart
         # its method "bvls" ends above the least cost where elements depend on others

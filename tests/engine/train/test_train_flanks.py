@@ -33,9 +33,7 @@ def test_hubs_beside_flanks_are_those_of_the_pair():
     load.pop("shaft")
     hubs = {"hub_friction": 0.3, "pinion_hub_radius": HUBS[0], "gear_hub_radius": HUBS[1]}
     keys = {f"gears.{key}": value for key, value in hubs.items()}
-    pair = solve(
-        scene.pair("first").replace({"drive": drive, "load": load, **keys}), t_end=80e-6, samples=9
-    )
+    pair = solve(scene.pair("first").replace({"drive": drive, "load": load, **keys}), t_end=80e-6, samples=9)
     train = solve_train(scene, t_end=80e-6, samples=9)
     for i, side in enumerate(("pinion", "gear")):
         samples = train.samples["shaft_speed"][i], train.samples["hub_load"][i]

@@ -35,7 +35,9 @@ PASSES: Final = 10
 
 
 @compiled
-def solve_free(count: int, gram: NDArray[np.float64], work: NDArray[np.float64], box: NDArray[np.float64]) -> int:
+def solve_free(
+    count: int, gram: NDArray[np.float64], work: NDArray[np.float64], box: NDArray[np.float64]
+) -> int:
     """Solve ``G step = left`` on all elements that are not at a limit; the number of independent ones is returned.
 
     Dependent ones have a step of zero. Matrix and elements are scaled by the root of the diagonal.
@@ -99,7 +101,9 @@ def solve_held(
 
 
 @compiled
-def solve_box(count: int, gram: NDArray[np.float64], work: NDArray[np.float64], box: NDArray[np.float64]) -> bool:
+def solve_box(
+    count: int, gram: NDArray[np.float64], work: NDArray[np.float64], box: NDArray[np.float64]
+) -> bool:
     """Frictions within their limits by Gauss' principle, and the accelerations that they leave; whether found.
 
     Parameters

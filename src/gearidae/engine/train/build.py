@@ -11,6 +11,7 @@ from typing import Final
 import numpy as np
 
 from gearidae.engine.compiling import TRAIN, make_part_ready
+from gearidae.engine.events.sliding import STILL
 from gearidae.engine.model.addresses import Addresses
 from gearidae.engine.model.state import DRIVE, Floats, Model, Record
 from gearidae.engine.pairs.mesh_error import mesh_error
@@ -23,7 +24,6 @@ from gearidae.engine.train.layout import TrainModel, blank_train
 from gearidae.engine.train.loop import LOOKS
 from gearidae.engine.train.observe import kinetic_energy_of, write_stored
 from gearidae.engine.train.start import begin_train
-from gearidae.engine.train.sticking import STILL
 from gearidae.errors import SceneError
 from gearidae.records import first_sample
 from gearidae.scene import Drive, GearScene, Load

@@ -73,7 +73,10 @@ MESH: Final = record_type(
     ("drive_y", REAL),
     ("coast_x", REAL),  # and the coast flank
     ("coast_y", REAL),
-    ("rub_x", REAL),  # direction in which friction of the drive flank pushes the driver where that slides ahead
+    (
+        "rub_x",
+        REAL,
+    ),  # direction in which friction of the drive flank pushes the driver where that slides ahead
     ("rub_y", REAL),
     ("coast_rub_x", REAL),  # and of the coast flank
     ("coast_rub_y", REAL),
@@ -162,7 +165,10 @@ ELEMENT: Final = record_type(
     ("b", INT),
     ("first", REAL),  # its speed per speed of shaft a: r1 [m], or 1
     ("second", REAL),  # and of shaft b: -r2 [m], or 0
-    ("bend", REAL),  # rate of its speed with shafts that keep theirs, less what errors have brought about [m/s^2]
+    (
+        "bend",
+        REAL,
+    ),  # rate of its speed with shafts that keep theirs, less what errors have brought about [m/s^2]
     ("x", REAL),  # direction in which the friction pushes the hub of shaft a
     ("y", REAL),
 )
@@ -206,7 +212,7 @@ class TrainModel(NamedTuple):
     elements : ndarray of records
         `ELEMENT`: what is at rest beside flanks with friction.
     gram, work, box : ndarray
-        See `gearidae.engine.train.box`; `box` has the forces in newtons of pairs, the torques in newton metres of shafts.
+        See `gearidae.engine.train.box`; `box` has forces [N] of pairs, torques [N m] of shafts.
     """
 
     train: NDArray[Any]

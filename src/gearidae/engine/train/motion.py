@@ -4,11 +4,11 @@
                   - h_i s_i
 
 with the torques T of drive, load and drags, and the direction s in which a shaft slips; one that is held keeps its
-place. Friction of flanks comes beside these: `gearidae.engine.train.flanks`. A mesh pushes its driven gear with its drive and coast flanks by the vector S, and its driver by -S. Hubs carry
+place. A mesh pushes its driven gear with its drive and coast flanks by the vector S, and its driver by -S. Hubs carry
 
     N_i = | P_i + sum_{k: b=i} S_k - sum_{k: a=i} S_k |
 
-with the force P of the drive's pin, and h is what may resist: dry resistance, and the friction of hub and pin.
+with the force P of the drive's pin, and h is what may resist: dry resistance, and the friction of hub and pin. Friction of flanks comes beside these (`gearidae.engine.train.flanks`).
 """
 
 from __future__ import annotations

@@ -322,7 +322,15 @@ def _totals(problem: TrainProblem) -> TrainTotals:
         "work_out": of_meshes[:, 4].copy(),
     }
     kinetic = float(kinetic_energy_of(tm, y)) - problem.kinetic
-    lost = of_shafts[:, [0, 2, 3]].sum() + of_meshes[:, :2].sum() + rubbed.sum() + adhesion.sum() + dry + drags + pin
+    lost = (
+        of_shafts[:, [0, 2, 3]].sum()
+        + of_meshes[:, :2].sum()
+        + rubbed.sum()
+        + adhesion.sum()
+        + dry
+        + drags
+        + pin
+    )
     energy = {
         "drive_work": drive,
         "radius_work": float(radius.sum()),

@@ -277,9 +277,9 @@ def _add_still(tm: TrainModel, y: Floats) -> bool:
         return False
     for i in range(n):
         shaft = tm.shafts[i]
-        if shaft.rubs != 0 and shaft.slip != 0.0 and abs(y[n + i]) <= shaft.still:
-            if shaft.slip * rates[n + i] <= SMALL * shaft.no_torque / shaft.inertia:
-                shaft.slip, added = 0.0, True
+        slow = shaft.rubs != 0 and shaft.slip != 0.0 and abs(y[n + i]) <= shaft.still
+        if slow and shaft.slip * rates[n + i] <= SMALL * shaft.no_torque / shaft.inertia:
+            shaft.slip, added = 0.0, True
     for k in range(len(tm.meshes)):
         mesh = tm.meshes[k]
         m, a, b = model_at(mesh.place), tm.shafts[mesh.a], tm.shafts[mesh.b]
