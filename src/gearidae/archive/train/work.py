@@ -50,8 +50,9 @@ def work_shares(ds: xr.Dataset) -> list[Share]:
     Returns
     -------
     list of Share
-        From the drive to the load: each mesh (adhesion, damping, film, friction), each hub, dry resistance and drags of
-        each shaft, pin, load, the change of kinetic energy and of that in contacts, less the work of the changing radius.
+        From the drive to the load: each mesh (adhesion, damping, film, friction), each hub, dry resistance and drags
+        of each shaft, pin, load, the change of kinetic energy and of that in contacts, less the work of the changing
+        radius.
 
     Raises
     ------

@@ -263,7 +263,7 @@ def _solution(
         reached=float(train.time),
         start=float(train.start),
         statistics=statistics,
-        flanks_held=_flanks_held(tm),
+        flanks_held=_flanks_held(problem.model),
     )
 
 
