@@ -21,6 +21,8 @@ from gearidae.scene import Scene
 
 BACKENDS = ("native", "sksundae")
 MOMENTARY = ("history", "date_created", "wall_time", "source")
+FLANKS = rubbing(contact={"bodies": "rigid", "asperity": "hertz", "friction": 0.3})
+"""Hubs and flanks with friction."""
 
 
 def scene_of(tables, end, samples=61, **changes):
@@ -52,7 +54,9 @@ def differing(one, other):
 @pytest.mark.usefixtures("small_blocks")
 @pytest.mark.parametrize("backend", BACKENDS)
 @pytest.mark.parametrize(
-    "tables", [rubbing(), adhering(), split(), wavy()], ids=["hubs", "adhesion", "loop", "error"]
+    "tables",
+    [rubbing(), adhering(), split(), wavy(), FLANKS],
+    ids=["hubs", "adhesion", "loop", "error", "flanks"],
 )
 def test_a_resumed_run_is_the_whole_run_to_the_last_bit(tables, backend):
     blocks = []
@@ -68,8 +72,8 @@ def test_a_resumed_run_is_the_whole_run_to_the_last_bit(tables, backend):
 @pytest.mark.parametrize("backend", BACKENDS)
 @pytest.mark.parametrize(
     ("tables", "half"),
-    [(rubbing(), 40e-6), (adhering(), 60e-6), (split(), 30e-6), (stopping(), 92.5e-6)],
-    ids=["hubs", "adhesion", "loop", "held"],
+    [(rubbing(), 40e-6), (adhering(), 60e-6), (split(), 30e-6), (stopping(), 92.5e-6), (FLANKS, 30e-6)],
+    ids=["hubs", "adhesion", "loop", "held", "flanks"],
 )
 def test_a_continued_run_is_the_whole_run(tables, half, backend):
     """Times, angles, works and extremes go on; the steps are others, which costs a tolerance each."""

@@ -26,6 +26,7 @@ from gearidae.engine.train.observe import kinetic_energy_of, write_stored
 from gearidae.engine.train.record import record_at_shaft
 from gearidae.engine.train.rest import switch_rest
 from gearidae.engine.train.start import take_up, write_own_state
+from gearidae.engine.train.sticking import switch_sticking
 from gearidae.records import EventKind, Words
 from gearidae.records.quantity import COUNT_HIGH
 from gearidae.scene.scene import TrainScene
@@ -235,4 +236,7 @@ def _carry_rest(old: TrainProblem, new: TrainProblem, out: TrainOutput) -> None:
             shaft["rest_time"] += t - shaft["rest_begin"]
             record_at_shaft(tm, t, float(EventKind.SLIP), i, out)
         shaft["slip"], shaft["rest_begin"] = math.copysign(1.0, speed) if speed else 0.0, t
-    switch_rest(tm, t, tm.y, out)
+    if tm.train[0].flanks != 0:
+        switch_sticking(tm, t, tm.y, out)
+    else:
+        switch_rest(tm, t, tm.y, out)

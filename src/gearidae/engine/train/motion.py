@@ -8,7 +8,8 @@ place. A mesh pushes its driven gear with its drive and coast flanks by the vect
 
     N_i = | P_i + sum_{k: b=i} S_k - sum_{k: a=i} S_k |
 
-with the force P of the drive's pin, and h is what may resist: dry resistance, and the friction of hub and pin. Friction of flanks comes beside these (`gearidae.engine.train.flanks`).
+with the force P of the drive's pin, and h is what may resist: dry resistance, and the friction of hub and pin. Friction
+of flanks comes beside these (`gearidae.engine.train.flanks`).
 """
 
 from __future__ import annotations
