@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import quad
 
 import gearidae as gd
-from gearidae.engine.laws.pairs import PAIR_LAWS, deflects, force_of_pair, jumps, laws_of_mesh
+from gearidae.engine.laws.pairs import PAIR_LAWS, force_of_pair, laws_of_mesh
 from gearidae.engine.model.state import PHASE, SCENE, U, V, blank_model
 from gearidae.engine.pairs.tooth_pairs import PairState, pair_state
 from gearidae.engine.setup.build import make_problem
@@ -87,14 +87,6 @@ def test_a_mesh_has_the_laws_that_its_scene_asks_for():
         names = {law.name for k, law in enumerate(PAIR_LAWS) if there >> k & 1}
         contact = name if name in ("elastic bodies", "discrete asperities") else "statistical asperities"
         assert names == {name, contact}
-
-
-@pytest.mark.parametrize("name", FEATURES)
-def test_a_mesh_deflects_or_jumps_where_a_law_says_so(name):
-    """Elastic bodies deflect; their forces, and those of asperities one by one, have corners at events."""
-    m = make_problem(SMALL.replace(FEATURES[name])).model
-    assert deflects(m) == (name == "elastic bodies")
-    assert jumps(m) == (name in ("elastic bodies", "discrete asperities"))
 
 
 @pytest.mark.parametrize("radius_force", [True, False])
