@@ -119,7 +119,7 @@ MUTANTS = (
     ),
     Mutant(
         "history not updated at a turning point",
-        "engine/laws/statistical.py",
+        "engine/events/pair_events.py",
         "joined_height(h.joined[material], middle, limit))",
         "h.joined[material])",
         (*IMPACT, "engine/test_twin.py"),
@@ -455,9 +455,9 @@ MUTANTS = (
     ),
     Mutant(
         "deep contacts of elastic bodies not counted before a run returns to the asperity model",
-        "engine/laws/elastic.py",
-        "        m.state.deep_exits = m.state.extremes.mesh_exits",
-        "        m.state.deep_exits = 0",
+        "engine/events/histories.py",
+        "            m.state.deep_exits = m.state.extremes.mesh_exits",
+        "            m.state.deep_exits = 0",
         ("engine/test_returning.py",),
     ),
     Mutant(

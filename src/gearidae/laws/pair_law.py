@@ -132,13 +132,6 @@ class PairLaw:
         Terms of the balance; what `loss` and `mesh_loss` add goes to the first.
     refuse : (mesh) -> None, optional
         Raises `SceneError` where keys do not go together. In Python.
-    deflects : bool
-        Whether bodies deflect under its force, so that a gap on the way does not say what is in contact.
-    jumps : bool
-        Whether forces jump or have a kink at events of its contacts, at each of which the balance takes a sample.
-    begin, follow, turn : (m, k, y, gap, middle, value) -> value
-        Change what the law remembers of a pair, and add nothing: where nothing is joined yet, at an accepted time, and
-        at a turning point of the gap. `middle` is the gap in the middle of the contact.
     force : (m, t, y, pair, settling, value) -> value
         Adds to a `PairForce`. `settling` says whether deflections of elastic bodies are solved for.
     energy : (m, y, pair, value) -> value
@@ -166,11 +159,6 @@ class PairLaw:
     constants: tuple[MeshConstant, ...] = ()
     losses: tuple[Loss, ...] = ()
     refuse: Callable[[Any], None] | None = None
-    deflects: bool = False
-    jumps: bool = False
-    begin: Verb | None = None
-    follow: Verb | None = None
-    turn: Verb | None = None
     force: Verb | None = None
     energy: Verb | None = None
     joining: Verb | None = None

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from gearidae.compiled import compiled
+from gearidae.engine.elastic.histories import follow_nodes, init_nodes
 from gearidae.engine.elastic.nodes import middle_gap
 from gearidae.engine.events.asperity_events import join_at_start
 from gearidae.engine.events.cutoff import begin_within, watches_cutoff
 from gearidae.engine.events.law_switches import set_shaft_sides
 from gearidae.engine.events.mesh_marks import set_marks
 from gearidae.engine.events.sliding import begin_sliding
-from gearidae.engine.laws.pairs import begin_history, follow_history
 from gearidae.engine.laws.statistical import set_joined
 from gearidae.engine.model.addresses import model_at
 from gearidae.engine.model.state import EMPTY, MATERIALS, PHASE, Floats, Model
@@ -43,12 +43,14 @@ def accept(m: Model, t: float, y: Floats) -> None:
         k = history_of(m, coast, pair)
         h = m.state.history[k]
         gap, rate = gap_and_rate(m, coast, pair, y)
-        middle = middle_gap(m, k, y, gap)
         if h.pair != pair or not in_reach(m, gap):
-            init_history(m, k, pair, gap, middle)
-            begin_history(m, k, y, gap, middle, 0)
-        else:
-            follow_history(m, k, y, gap, middle, 0)
+            init_history(m, k, pair, gap, middle_gap(m, k, y, gap))
+            if m.scene.nodes > 0:
+                init_nodes(m, k, y, gap)
+        elif m.scene.nodes > 0:
+            follow_nodes(m, k, y, gap)
+        if m.scene.nodes > 0 and middle_gap(m, k, y, gap) < m.scene.light_gap:
+            m.state.deep_exits = m.state.extremes.mesh_exits
         h.gap, h.gap_rate = gap, rate
         if gap < m.scene.lowest_gap:
             m.state.bound_exceeded = 1

@@ -1,7 +1,6 @@
 """Events of a tooth pair: contact onset and separation, turning point of the gap, full stretch of a material.
 
-Contact is that of the gap alone, whatever laws a pair has. Where the others are, and what becomes of a pair's memory
-there, its laws say; here they are found one after the other and recorded.
+For each kind, its guard (positive while the event is to come) and what is done when the guard has fallen.
 """
 
 from __future__ import annotations
@@ -9,10 +8,11 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 from gearidae.compiled import compiled
+from gearidae.contact.history import joined_height
+from gearidae.engine.elastic.histories import join_nodes
 from gearidae.engine.elastic.nodes import middle_gap
 from gearidae.engine.events.record import record, record_contact
-from gearidae.engine.laws.pairs import turn_history
-from gearidae.engine.laws.statistical import history_guard, newly_stretched
+from gearidae.engine.laws.statistical import set_joined
 from gearidae.engine.model.state import MATERIALS, Floats, Model
 from gearidae.engine.pairs.tooth_pairs import gap_and_rate
 from gearidae.laws.pair_law import in_reach
@@ -28,9 +28,19 @@ _FLANK_CHANGE: Final = float(EventKind.FLANK_CHANGE)
 @compiled
 def pair_guard(m: Model, k: int, gap: float, rate: float, middle: float) -> float:
     """Least of one pair's guards; asperities stretch with the gap in the middle, which deflection has its part in."""
+    h = m.state.history[k]
     touch = gap - m.scene.contact_gap
-    least = -touch if m.state.history[k].in_contact != 0 else touch
-    return history_guard(m, k, rate, middle, least) if in_reach(m, gap) else least
+    least = -touch if h.in_contact != 0 else touch
+    if not in_reach(m, gap):
+        return least
+    if h.direction != 0.0:
+        least = min(least, rate * h.direction)
+    if h.direction > 0.0:
+        for material in range(MATERIALS):
+            limit = m.scene.material[material].stretch_limit
+            if limit > 0.0 and h.at_pull_off[material] == 0:
+                least = min(least, h.joined[material] + limit - middle)
+    return least
 
 
 class PairEvent(NamedTuple):
@@ -94,11 +104,7 @@ def take_event(m: Model, t: float, y: Floats, event: PairEvent, events: Floats, 
             m.state.history[k].at_pull_off[material] = 1
             count = record(m, events, count, t, _FULL_STRETCH, pair, coast, rate)
     if event.turns:
-        h = m.state.history[k]
-        h.lag = h.lag_power = h.lag_rate = 0.0  # joining has lagged up to there
-        turn_history(m, k, y, event.gap, event.middle, 0)
-        h.direction = -h.direction
-        h.gap, h.gap_rate = event.gap, 0.0
+        _turn_round(m, y, k, event.gap, event.middle)
         count = record(m, events, count, t, _TURNING_POINT, pair, coast, rate)
     return count
 
@@ -116,3 +122,27 @@ def _change_contact(m: Model, t: float, y: Floats, event: PairEvent, events: Flo
             count = record(m, events, count, t, _FLANK_CHANGE, pair, coast, rate)
         m.state.last_flank = coast
     return count
+
+
+@compiled
+def newly_stretched(m: Model, k: int, material: int, middle: float) -> bool:
+    """Whether a material's asperities have been stretched in full since that was last recorded."""
+    h, limit = m.state.history[k], m.scene.material[material].stretch_limit
+    waiting = limit > 0.0 and h.direction > 0.0 and h.at_pull_off[material] == 0
+    return bool(waiting and h.joined[material] + limit <= middle)
+
+
+@compiled
+def _turn_round(m: Model, y: Floats, k: int, gap: float, middle: float) -> None:
+    """Take the joined heights at a turning point of the gap; joining has lagged up to there."""
+    h = m.state.history[k]
+    h.lag = h.lag_power = h.lag_rate = 0.0
+    for material in range(MATERIALS):
+        limit = m.scene.material[material].stretch_limit
+        if limit > 0.0:
+            set_joined(m, k, material, joined_height(h.joined[material], middle, limit))
+            h.at_pull_off[material] = 0
+    if m.scene.nodes > 0:
+        join_nodes(m, k, y, gap)
+    h.direction = -h.direction
+    h.gap, h.gap_rate = gap, 0.0

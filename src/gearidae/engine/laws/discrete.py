@@ -179,4 +179,4 @@ def _acts(scene: Any) -> bool:
     return bool(scene.population.flanks != 0)
 
 
-DISCRETE = PairLaw(name="discrete asperities", acts=_acts, jumps=True, force=_force, energy=_energy)
+DISCRETE = PairLaw(name="discrete asperities", acts=_acts, force=_force, energy=_energy)

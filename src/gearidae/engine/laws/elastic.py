@@ -16,12 +16,10 @@ from gearidae.engine.elastic.energy import (
     nodes_number,
     nodes_stored,
 )
-from gearidae.engine.elastic.histories import follow_nodes, init_nodes, join_nodes
 from gearidae.engine.elastic.limits import limit_of_nodes
 from gearidae.engine.elastic.nodes import node_force
 from gearidae.engine.elastic.rows import TANGENT, row
 from gearidae.engine.elastic.static_condensation import condense_pair
-from gearidae.engine.laws.statistical import join_at_turn
 from gearidae.engine.model.state import PHASE, Floats, Model, V, W
 from gearidae.engine.pairs.coverage import (
     NONE,
@@ -38,39 +36,6 @@ from gearidae.engine.pairs.lengths import length_and_rates, slopes_along_path, w
 from gearidae.engine.pairs.orbit import opening_of
 from gearidae.engine.pairs.tooth_pairs import PairState, contact_length, flank_of_history, is_on_path
 from gearidae.laws.pair_law import NO_PAIR_FORCE, PairForce, PairLaw, both_forces, of_path
-
-# -- its history -----------------------------------------------------------------------------------------------------
-
-
-@compiled
-def _begin(m: Model, k: int, y: Floats, gap: float, middle: float, value: int) -> int:
-    init_nodes(m, k, y, gap)
-    _note_depth(m, middle)
-    return value
-
-
-@compiled
-def _follow(m: Model, k: int, y: Floats, gap: float, middle: float, value: int) -> int:
-    follow_nodes(m, k, y, gap)
-    _note_depth(m, middle)
-    return value
-
-
-@compiled(inline=True)
-def _note_depth(m: Model, middle: float) -> None:
-    """Note that a contact is too deep to go on without the bodies."""
-    if middle < m.scene.light_gap:
-        m.state.deep_exits = m.state.extremes.mesh_exits
-
-
-@compiled
-def _turn(m: Model, k: int, y: Floats, gap: float, middle: float, value: int) -> int:
-    join_at_turn(m, k, y, gap, middle, value)
-    join_nodes(m, k, y, gap)
-    return value
-
-
-# -- force -----------------------------------------------------------------------------------------------------------
 
 
 @compiled_once(ELASTIC_PART, makes_arrays=True)
@@ -186,11 +151,6 @@ def _acts(scene: Any) -> bool:
 ELASTIC = PairLaw(
     name="elastic bodies",
     acts=_acts,
-    deflects=True,
-    jumps=True,
-    begin=_begin,
-    follow=_follow,
-    turn=_turn,
     force=_force,
     energy=_energy,
     joining=_joining,

@@ -100,10 +100,6 @@ def _sum(verbs: Iterable[Verb | None]) -> Any:
     return total
 
 
-begin_history = _sum(law.begin for law in PAIR_LAWS)
-follow_history = _sum(law.follow for law in PAIR_LAWS)
-turn_history = _sum(law.turn for law in PAIR_LAWS)
-"""Change what laws remember of a pair: (m, k, y, gap, middle, 0) -> 0."""
 _force = _sum(_within_step(law) for law in PAIR_LAWS)
 _energy = _sum(law.energy for law in PAIR_LAWS)
 _joining = _sum(law.joining for law in PAIR_LAWS)
@@ -178,24 +174,6 @@ def radius_power(m: Model, t: float, y: Floats, w_rate: float) -> tuple[float, f
             power += more
             rate += change
     return power, rate
-
-
-# -- what laws say of their contacts ---------------------------------------------------------------------------------
-
-_DEFLECTING: Final = sum(1 << k for k, law in enumerate(PAIR_LAWS) if law.deflects)
-_JUMPING: Final = sum(1 << k for k, law in enumerate(PAIR_LAWS) if law.jumps)
-
-
-@compiled(inline=True)
-def deflects(m: Model) -> bool:
-    """Whether bodies deflect, so that a gap between two accepted times does not say what is in contact."""
-    return bool(m.scene.pair_laws & _DEFLECTING != 0)
-
-
-@compiled(inline=True)
-def jumps(m: Model) -> bool:
-    """Whether forces jump or have a kink at events of contacts."""
-    return bool(m.scene.pair_laws & _JUMPING != 0)
 
 
 # -- losses ----------------------------------------------------------------------------------------------------------

@@ -259,43 +259,6 @@ def _free(
     return scale * e, scale * de
 
 
-# -- its history, which elastic bodies have in the middle of a contact ------------------------------------------------
-
-
-@compiled(inline=True)
-def history_guard(m: Model, k: int, rate: float, middle: float, value: float) -> float:
-    """Take the distance of a pair to its turning point, and to the full stretch of each material."""
-    h = m.state.history[k]
-    if h.direction != 0.0:
-        value = min(value, rate * h.direction)
-    if h.direction > 0.0:
-        for material in range(MATERIALS):
-            limit = m.scene.material[material].stretch_limit
-            if limit > 0.0 and h.at_pull_off[material] == 0:
-                value = min(value, h.joined[material] + limit - middle)
-    return value
-
-
-@compiled
-def newly_stretched(m: Model, k: int, material: int, middle: float) -> bool:
-    """Whether a material's asperities have been stretched in full since that was last recorded."""
-    h, limit = m.state.history[k], m.scene.material[material].stretch_limit
-    waiting = limit > 0.0 and h.direction > 0.0 and h.at_pull_off[material] == 0
-    return bool(waiting and h.joined[material] + limit <= middle)
-
-
-@compiled
-def join_at_turn(m: Model, k: int, y: Floats, gap: float, middle: float, value: int) -> int:
-    """Take the joined heights at a turning point of the gap."""
-    h = m.state.history[k]
-    for material in range(MATERIALS):
-        limit = m.scene.material[material].stretch_limit
-        if limit > 0.0:
-            set_joined(m, k, material, joined_height(h.joined[material], middle, limit))
-            h.at_pull_off[material] = 0
-    return value
-
-
 # -- what it is asked ------------------------------------------------------------------------------------------------
 
 
@@ -356,7 +319,6 @@ def _acts(scene: Any) -> bool:
 STATISTICAL = PairLaw(
     name="statistical asperities",
     acts=_acts,
-    turn=join_at_turn,
     force=_force,
     energy=_energy,
     joining=_joining,

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.laws.pairs import deflects, joining_losses
+from gearidae.engine.laws.pairs import joining_losses
 from gearidae.engine.model.state import PHASE, Floats, Model, V, W
 from gearidae.engine.pairs.coverage import NONE, Shares, path_position, shares_of, weighed
 from gearidae.engine.pairs.lengths import weighed_length
@@ -67,7 +67,7 @@ def event(m: Model, y: Floats, coast: int, pair: int, k: int, gap: float) -> Non
     e.adhesion_loss += contact_length(m, inside) * weighed(shares_of(m, coast, pair, inside), losses) - lag
     if m.scene.curvature_force == 0:
         e.radius_work -= lag
-        if not deflects(m):
+        if m.scene.nodes == 0:
             _accumulate_before(m, coast, pair, y[PHASE], losses)
 
 

@@ -37,16 +37,9 @@ from gearidae.engine import adams
 from gearidae.engine.compiling import SOLVER
 from gearidae.engine.events.cutoff import cutoff_guard, watches_cutoff
 from gearidae.engine.events.mesh_marks import crossed_mark
+from gearidae.engine.events.pair_events import newly_stretched
 from gearidae.engine.events.sliding import dry_guard
-from gearidae.engine.laws.pairs import (
-    LOSING,
-    book_losses_of_mesh,
-    deflects,
-    jumps,
-    radius_power,
-    stored_energy,
-)
-from gearidae.engine.laws.statistical import newly_stretched
+from gearidae.engine.laws.pairs import LOSING, book_losses_of_mesh, radius_power, stored_energy
 from gearidae.engine.model.addresses import model_at
 from gearidae.engine.model.state import DRIVE, LOAD, MATERIALS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.kinetic import energy_of_speeds, kinetic_energy
@@ -167,7 +160,9 @@ def _can_wait(m: Model, t: float, y: Floats) -> bool:
     That is so where pairs touch, part or turn round and nothing else happens: up to their third derivative the
     powers know nothing of it.
     """
-    if m.state.bound_exceeded != 0 or jumps(m) or m.scene.friction.rubs != 0:
+    if m.scene.nodes > 0 or m.state.bound_exceeded != 0:
+        return False
+    if m.scene.population.flanks != 0 or m.scene.friction.rubs != 0:  # forces jump
         return False
     if m.scene.guarded != 0 or m.scene.law_switches != 0:  # torques do
         return False
@@ -204,7 +199,7 @@ def resume(m: Model, t: float, y: Floats, crossed: bool, joined: bool) -> None:
     q = m.work.quadrature
     if m.scene.dry != 0 and q.time == t:
         m.state.energy.dry_loss += q.kinetic - kinetic_energy(m, y)
-    if crossed or (joined and deflects(m)):
+    if crossed or (joined and m.scene.nodes > 0):
         _sample_radius_power(m, t, y)
 
 

@@ -20,7 +20,7 @@ import numpy as np
 from gearidae.compiled import compiled, compiled_once, name_type
 from gearidae.engine.compiling import IMPACTS
 from gearidae.engine.elastic.static_condensation import following_slope
-from gearidae.engine.laws.pairs import force_of_pair, jumps
+from gearidae.engine.laws.pairs import force_of_pair
 from gearidae.engine.model.record_types import Record
 from gearidae.engine.model.state import SLOTS_HIGH, Floats, Model, V, W
 from gearidae.engine.pairs.orbit import acceleration_of_gap
@@ -125,15 +125,15 @@ def write_impacts(
     count : int
         Rows already there.
     """
-    corner = jumps(m)
+    jumps = m.scene.nodes > 0 or m.scene.population.flanks != 0
     for i in range(new[0], new[1]):
         kind = events[i, _KIND]
-        corner |= kind in (_FULL_STRETCH, _ONSET)
+        jumps |= kind in (_FULL_STRETCH, _ONSET)
         if kind == _ONSET:
             _begin_with(m, t, y, yp, events[i])
         elif kind == _SEPARATION and count < rows.shape[0]:
             count += _fill(m, t, events[i], rows[count])
-    if corner:
+    if jumps:
         _renew(m, t, y, yp)
     return count
 

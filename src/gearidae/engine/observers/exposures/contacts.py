@@ -16,7 +16,7 @@ from gearidae.compiled import compiled, compiled_once
 from gearidae.contact.history import extreme_gap
 from gearidae.engine.compiling import EXPOSURES
 from gearidae.engine.laws.discrete import candidate_energy
-from gearidae.engine.laws.pairs import asperities_in_contact, deflects
+from gearidae.engine.laws.pairs import asperities_in_contact
 from gearidae.engine.model.state import MATERIALS, Floats, Model
 from gearidae.engine.observers.exposures.bins import ROWS, bin_at, row_of, share_at_edge
 from gearidae.engine.pairs.tooth_pairs import contact_length, list_known
@@ -28,7 +28,7 @@ from gearidae.formulas.interpolation import cubic
 @compiled
 def adds_often(m: Model) -> bool:
     """Whether contacts are added up wherever sliding work is, as the lag of each material is not known."""
-    often = deflects(m) or m.scene.by_place != 0
+    often = m.scene.nodes > 0 or m.scene.by_place != 0
     for material in range(MATERIALS):
         surface = m.scene.material[material]
         often |= surface.force_scale > 0.0 and surface.stretch_limit == 0.0
@@ -54,7 +54,7 @@ def turn_to_closing(m: Model, y: Floats, k: int, gap: float) -> None:
     exposure.turned = 1
     for material in range(MATERIALS):
         law = m.scene.material[material]
-        if law.force_scale > 0.0 and (law.stretch_limit == 0.0 or deflects(m)):
+        if law.force_scale > 0.0 and (law.stretch_limit == 0.0 or m.scene.nodes > 0):
             exposure.front[material] = asperities_in_contact(m, k, y, gap, material)
 
 
@@ -70,7 +70,7 @@ def joins_here(m: Model, k: int, inside: float, gap: float) -> bool:
 @compiled(inline=True)
 def joins(m: Model, k: int, gap: float) -> bool:
     """Whether asperities of a closing contact join: below what has joined before."""
-    h, joining = m.state.history[k], deflects(m)
+    h, joining = m.state.history[k], m.scene.nodes > 0
     for material in range(MATERIALS):
         surface = m.scene.material[material]
         joining |= surface.force_scale > 0.0 and (gap < h.joined[material] or surface.stretch_limit == 0.0)
@@ -85,7 +85,7 @@ def join(m: Model, t: float, y: Floats, k: int, inside: float, gap: tuple[float,
     here, length = bin_at(m, inside), contact_length(m, inside)
     mean = 0.5 * (length + contact_length(m, exposure.position)) if often else length - missing
     for material in range(MATERIALS):
-        if exposure.turned != 0 and m.scene.material[material].stretch_limit > 0.0 and not deflects(m):
+        if exposure.turned != 0 and m.scene.material[material].stretch_limit > 0.0 and m.scene.nodes == 0:
             exposure.front[material], exposure.added[material] = exposure.base[material], 0.0
         rise = exposure.number[material] - exposure.front[material]
         if rise <= 0.0:
@@ -119,7 +119,7 @@ def _note_numbers(m: Model, y: Floats, k: int, gap: float) -> float:
         if law.force_scale <= 0.0:
             continue
         exposure.number[material] = asperities_in_contact(m, k, y, gap, material)
-        if law.stretch_limit > 0.0 and not deflects(m):
+        if law.stretch_limit > 0.0 and m.scene.nodes == 0:
             exposure.base[material] = -h.adhered_energy[material] / law.joining_energy
             lost += (
                 law.joining_energy * law.force_scale * (exposure.number[material] - exposure.base[material])
@@ -148,7 +148,7 @@ def _divide(
     while here != bin_at(m, inside):
         share = share_at_edge(m, here, exposure.position, inside)
         front = first + share * (last - first)
-        if not deflects(m):  # of elastic contacts the deflection on the way is not known
+        if m.scene.nodes == 0:  # of elastic contacts the deflection on the way is not known
             passing = cubic(share, t - exposure.time, exposure.gap, exposure.gap_rate, gap, rate)
             front = min(max(asperities_in_contact(m, k, y, passing, material), before), last)
         _add(m, k, material, here, more * (front - before) / (last - first))

@@ -29,7 +29,7 @@ import math
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import EXPOSURES
 from gearidae.engine.events.pair_events import PairEvent
-from gearidae.engine.laws.pairs import deflects, force_of_pair
+from gearidae.engine.laws.pairs import force_of_pair
 from gearidae.engine.model.state import MATERIALS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
 from gearidae.engine.observers.exposures.bins import bin_at, row_of, way_to_edge
@@ -99,7 +99,7 @@ def _follow(m: Model, t: float, y: Floats, yp: Floats, whole: bool) -> None:
     forces_at(m, t, y)
     sliding = sliding_speeds(m, y, yp[V], yp[W])
     to_zero, way = math.inf, math.inf
-    ends = whole or deflects(m) or exposing.steps >= exposing.steps_per_interval
+    ends = whole or m.scene.nodes > 0 or exposing.steps >= exposing.steps_per_interval
     for i in range(m.work.pair_forces.count):
         noted = m.work.pair_forces.pair[i]
         k = noted.history
@@ -129,7 +129,7 @@ def step(m: Model, t: float, y: Floats, yp: Floats, root: bool, closed: bool) ->
     interval.
     """
     exposing = m.work.exposing
-    if deflects(m):
+    if m.scene.nodes > 0:
         if closed:
             _follow(m, t, y, yp, False)
     elif root and m.scene.population.flanks != 0:  # forces may jump here
@@ -156,7 +156,12 @@ def event(m: Model, t: float, y: Floats, yp: Floats, event: PairEvent) -> None:
     exposure = m.work.exposing.pair[k]
     if m.state.history[k].direction < 0.0:
         inside = path_position(m, coast, pair, y[PHASE])
-        if gap < exposure.lowest or bin_at(m, inside) != exposure.seen_bin or deflects(m) or joins(m, k, gap):
+        if (
+            gap < exposure.lowest
+            or bin_at(m, inside) != exposure.seen_bin
+            or m.scene.nodes > 0
+            or joins(m, k, gap)
+        ):
             _close(m, t, y, yp, coast, pair, k, gap)
     elif m.work.exposing.often == 0:
         exposure.turned = 1
@@ -184,7 +189,7 @@ def _close(m: Model, t: float, y: Floats, yp: Floats, coast: int, pair: int, k: 
     _begin_new(m, k, pair, inside)
     if joins(m, k, gap):
         join(m, t, y, k, inside, (gap, 0.0))
-    here, elastic = bin_at(m, inside), deflects(m)
+    here, elastic = bin_at(m, inside), m.scene.nodes > 0
     if elastic or gap < exposure.lowest or here != exposure.seen_bin:
         exposure.lowest = min(exposure.lowest, gap)
         force, _ = _force(m, t, y, (coast, pair, k), (gap, 0.0, inside))
