@@ -60,7 +60,7 @@ from gearidae.errors import SceneError
 from gearidae.laws.shaft.schedule import segment_ends
 from gearidae.records import EventKind, Events, Flank
 from gearidae.records.quantity import convert
-from gearidae.scene import Scene, require_gears
+from gearidae.scene import Scene, TrainScene, require_gears
 from gearidae.scene.differences import first_difference, may_change
 
 _SAME: Final = 1e-12
@@ -202,15 +202,26 @@ def refuse_other_bodies(old: Scene, new: Scene) -> None:
     """Refuse a scene that differs in what may not."""
     before, after = old.to_dict(), new.to_dict()
     difference = first_difference(before, after, ignored=may_change(before))
-    for table in ("shafts", "meshes"):
-        names, others = list(before.get(table, ())), list(after.get(table, ()))
-        if difference is None and names != others:
-            difference = table, ", ".join(names), ", ".join(others)
+    if difference is None and isinstance(old, TrainScene) and isinstance(new, TrainScene):
+        mine, theirs = _order_of(old), _order_of(new)
+        key = next((key for key in mine if mine[key] != theirs[key]), None)
+        difference = None if key is None else (key, mine[key], theirs[key])
     if difference is not None:
-        key, mine, theirs = difference
-        value = "(missing)" if theirs is None else "(given)" if isinstance(theirs, dict) else theirs
-        wanted = "left out" if mine is None else "given" if isinstance(mine, dict) else mine
-        raise SceneError(key, value, f"must be {wanted}, as in the run to go on from")
+        name, first, second = difference
+        value = "(missing)" if second is None else "(given)" if isinstance(second, dict) else second
+        wanted = "left out" if first is None else "given" if isinstance(first, dict) else first
+        raise SceneError(name, value, f"must be {wanted}, as in the run to go on from")
+
+
+def _order_of(scene: TrainScene) -> dict[str, str]:
+    """What of a train counts besides its keys: the order of shafts and meshes, which shaft is driven and loaded."""
+    train = scene.train
+    return {
+        "shafts": ", ".join(scene.shafts),
+        "meshes": ", ".join(scene.meshes),
+        "drive.shaft": train.shafts[train.drive].name,
+        "load.shaft": train.shafts[train.load].name,
+    }
 
 
 def _same_contact(old: Problem, new: Problem) -> Problem:

@@ -102,10 +102,11 @@ def simulate(
     """
     scene = prepare(scene, rtol=rtol, samples=samples, backend=backend, trains=True)
     begin = started_from(start, scene)
-    if (
-        begin.scene is not None and begin.scene.initial is not None
-    ):  # where the angles of the chain count from
-        scene = scene.replace({"initial.mesh_phase": begin.scene.initial.mesh_phase})
+    if begin.scene is not None and begin.scene.initial is not None:  # where angles and phases count from
+        phase = {"initial.mesh_phase": begin.scene.initial.mesh_phase}
+        scene = scene.replace(
+            {"initial": begin.scene.to_dict()["initial"]} if is_long_train(scene) else phase
+        )
     if t_end is not None:
         scene = _ending(scene, t_end, begin.time)
     if is_long_train(scene):

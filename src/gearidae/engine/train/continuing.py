@@ -219,7 +219,9 @@ def _carry_meshes(old: TrainProblem, new: TrainProblem) -> None:
         new.energies[::3] += change[:, 0] + change[:, 1]
         return
     new.model.y[2 * len(new.model.shafts) :] = 0.0
+    # what contacts that close have lost so far is no loss of this balance
     new.energies[:], new.kinetic = after, float(kinetic_energy_of(new.model, new.model.y))
+    new.energies[::3] += after.reshape(-1, 3)[:, 1]
     train = new.model.train[0]
     train.throughput = train.peak_kinetic = train.kinetic = new.kinetic
 
