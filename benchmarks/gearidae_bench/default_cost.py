@@ -135,9 +135,11 @@ def _measure(name: str, scene: Scene, rounds: int) -> DefaultCost:
 
 def default_table(costs: Sequence[DefaultCost]) -> str:
     """Table in Markdown."""
-    choices = " | ".join(CHOICES)
     rows = [
-        f"| scene | steps | ns per step alone | {choices} | error of the angle [pitches] | residual / bound |",
+        (
+            f"| scene | steps | ns per step alone | {' | '.join(CHOICES)} "
+            "| error of the angle [pitches] | residual / bound |"
+        ),
         "|---|" + "---:|" * (4 + len(CHOICES)),
     ]
     for cost in costs:
