@@ -96,7 +96,7 @@ def _keep(place, numbers):  # type: ignore[no-untyped-def]
     m = model_at(place)
     n = m.scene.states
     a = carray(numbers, (VECTORS * n + 1,))
-    adams.keep(m.work.adams, a[VECTORS * n], a[n : 2 * n])
+    adams.store_step(m.work.adams, a[VECTORS * n], a[n : 2 * n])
 
 
 @compiled_callback(types.void(_PTR, _REALS, types.float64))

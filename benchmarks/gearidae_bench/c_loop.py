@@ -22,7 +22,7 @@ from gearidae.engine.integrate.roots import SHARPNESS
 from gearidae.engine.model.addresses import POINTERS, note_addresses
 from gearidae.engine.motion.observe import observe
 from gearidae.engine.setup.problem import Problem
-from gearidae.engine.sundials.names import newton_places, places
+from gearidae.engine.sundials.names import linear_solver_offsets, newton_offsets
 from gearidae_bench.contender import BROKEN, Contender, Outcome
 from gearidae_bench.reference import end_of
 
@@ -95,9 +95,9 @@ def _run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
     events, steps, calls = np.empty(BLOCK_NUMBERS), np.zeros(1, np.int64), addresses()
     m.work.search.sharpness = SHARPNESS * tolerance
     observe(m, 0.0, y, rows[0])
-    where = opened.Places(places(), newton_places())
+    where = opened.FunctionOffsets(linear_solver_offsets(), newton_offsets())
     try:
-        of_ours = problem.addresses.place, callbacks(n, False), where, (y, yp, dky)
+        of_ours = problem.addresses.base, callbacks(n, False), where, (y, yp, dky)
         if opened.open_solver(handles, *of_ours, CONVERGENCE_FAILURES_HIGH) != 0:
             return BROKEN
         flag = _library().gearidae_loop(

@@ -44,12 +44,12 @@ def arm(m: Model, y: Floats, heights: Floats) -> bool:
     armed = False
     reach = pairs_near(m, y)
     for i in range(reach.total):
-        coast, pair = pair_at(reach, i)
-        k = history_of(m, coast, pair)
+        flank, pair = pair_at(reach, i)
+        k = history_of(m, flank, pair)
         h = m.state.history[k]
         if h.pair != pair or h.direction > 0.0:
             continue
-        gap, _ = gap_and_rate(m, coast, pair, y)
+        gap, _ = gap_and_rate(m, flank, pair, y)
         for material in range(MATERIALS):
             joined = h.joined[material]
             if m.scene.material[material].stretch_limit > 0.0 and joined < gap < m.scene.cutoff:
@@ -66,11 +66,11 @@ def watch(m: Model, t: float, y: Floats, heights: Floats, armed: bool) -> float:
         return least
     reach = pairs_near(m, y)
     for i in range(reach.total):
-        coast, pair = pair_at(reach, i)
-        k = history_of(m, coast, pair)
+        flank, pair = pair_at(reach, i)
+        k = history_of(m, flank, pair)
         if m.state.history[k].pair != pair:
             continue
-        gap, _ = gap_and_rate(m, coast, pair, y)
+        gap, _ = gap_and_rate(m, flank, pair, y)
         for material in range(MATERIALS):
             least = min(least, gap - heights[MATERIALS * k + material])
     return least

@@ -81,7 +81,7 @@ class _Events:
     """Follows histories and events behind a solver that knows nothing of them."""
 
     def __init__(self, addresses: Addresses, start: Floats) -> None:
-        self._addresses, self._place = addresses, addresses.place
+        self._addresses, self._place = addresses, addresses.base
         self._room = np.empty((EVENTS_AT_ONCE, EVENT_NUMBERS))
         self._before = guard_at(self._place, 0.0, start)
         self.failed = False
@@ -127,7 +127,7 @@ class _Events:
 def _scipy(method: Any, implicit: bool) -> Callable[[Problem, float, Floats], Outcome]:
     def run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
         addresses = Addresses(alone(problem).model)
-        place = addresses.place
+        place = addresses.base
 
         def fun(t: float, y: Floats) -> Floats:
             return _slope(place, t, y)
@@ -172,7 +172,7 @@ def _sundials(
 ) -> Callable[..., Outcome]:
     def run(problem: Problem, tolerance: float, times: Floats) -> Outcome:
         addresses, end = Addresses(alone(problem).model), end_of(problem)
-        place = addresses.place
+        place = addresses.base
 
         def eventsfn(t: float, y: Floats, *rest: Floats) -> None:
             rest[-1][0] = guard_at(place, t, y.copy())  # what scikit-sundae passes is read-only

@@ -56,7 +56,7 @@ PARTS: Final = (
     Part("formula: prediction", "step.adams", "rates_at_end", _NEWTON),
     Part("residual and slopes", "integrate.correction", "motion", _NEWTON),
     Part("formula: error, order, next step", "step", "control_step", _NEWTON),
-    Part("formula: differences kept", "step.adams", "keep", _STEP),
+    Part("formula: differences kept", "step.adams", "store_step", _STEP),
     Part("guard function", "step", "evaluate_guard", ""),
     Part("states at roots", "integrate.roots", "state_at", ""),
     Part("samples", "step", "sample", ""),

@@ -45,14 +45,16 @@ def lazy_names(
         if alias.name == alias.asname
     }
     for file in pkgutil.iter_modules(import_module(files_of).__path__) if files_of else ():
-        if (place := f"{files_of}.{file.name}") not in home.values():
-            home.setdefault(file.name, place)
+        if (module := f"{files_of}.{file.name}") not in home.values():
+            home.setdefault(file.name, module)
 
     def load(name: str) -> Any:
         if name not in home:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
-        place = home[name]
-        value = import_module(f"{place}.{name}") if place == package else getattr(import_module(place), name)
+        module = home[name]
+        value = (
+            import_module(f"{module}.{name}") if module == package else getattr(import_module(module), name)
+        )
         setattr(here, name, value)
         return value
 

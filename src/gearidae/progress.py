@@ -274,21 +274,21 @@ def _notebook_bar(display: Any, title: str, total: float) -> Iterator[Advance]:
     began, drawn = monotonic(), [0.0]
     busy = threading.Lock()
 
-    def look() -> dict[str, str]:
+    def bundle() -> dict[str, str]:
         done, words = state[0], f"{title}: {state[1]}, {monotonic() - began:.3g} s"
         element = f'<progress max="{total:g}" value="{done:g}" style="vertical-align: middle"></progress>'
         return {"text/plain": words, "text/html": f"<div>{element} {html.escape(words)}</div>"}
 
-    handle = display(look(), raw=True, display_id=True)
+    handle = display(bundle(), raw=True, display_id=True)
 
     def advance(done: float, words: str, left: float) -> None:
         with busy:  # runs of a sweep report from several threads
             state[:] = [done, words if math.isnan(left) else f"{words}, about {in_words(left)} left"]
             if monotonic() - drawn[0] >= _REDRAWN:
                 drawn[0] = monotonic()
-                handle.update(look(), raw=True)
+                handle.update(bundle(), raw=True)
 
     try:
         yield advance
     finally:
-        handle.update(look(), raw=True)
+        handle.update(bundle(), raw=True)

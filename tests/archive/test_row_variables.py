@@ -85,7 +85,7 @@ def test_passages_are_kept_by_their_name(make_solution):
         keep = read_keep(names, LOW)
         thinned = keep.thinned(solution)
         assert (len(thinned.events), len(thinned.passages)) == left
-        ds = combine(LOW, {"coating.sam_fraction": [1.0]}, [LOW], [thinned], keep=keep)
+        ds = combine(LOW, {"coating.sam_fraction": [1.0]}, [LOW], [thinned], selection=keep)
         assert {dim for dim in ("event", "passage") if dim in ds.dims} == {name[:-1] for name in names}
     with pytest.raises(gd.SceneError, match="passages"):
         read_keep(["passages"], ROLLER)

@@ -16,7 +16,7 @@ from gearidae.contact.asperity_statistics import (
     density_product,
     expected_asperities,
     half_spacing,
-    mean_square_place,
+    mean_square_position,
     zero_load_radius,
 )
 from gearidae.contact.psi import psi
@@ -96,7 +96,7 @@ def test_places_of_the_asperities_in_contact(gap):
         )[0]
 
     wanted = 2.0 * RADIUS * sigma * moment(2) / moment(0)
-    assert mean_square_place(gap * sigma, RADIUS, SILICON) == pytest.approx(wanted, rel=1e-7, abs=0)
+    assert mean_square_position(gap * sigma, RADIUS, SILICON) == pytest.approx(wanted, rel=1e-7, abs=0)
 
 
 @pytest.mark.parametrize("gap", [-6.0, -1.0, 0.0, 1.0, 3.0, 6.0, 9.0])

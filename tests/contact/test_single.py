@@ -11,7 +11,7 @@ from gearidae.asperities.tip import asperity_of
 from gearidae.contact.asperity_statistics import asperities_for_mean, expected_asperities
 from gearidae.contact.kernels.single import asperity_energy, asperity_table, asperity_value
 from gearidae.contact.psi import psi
-from gearidae.mesh import curvature_radii, flank_arc, place_of_arc
+from gearidae.mesh import curvature_radii, flank_arc, position_of_arc
 from gearidae.scene import preset
 from reference.population import NUMBERS, Contact, Tip, drop
 
@@ -88,7 +88,7 @@ def test_arcs_and_radii_along_the_path():
         curvature_radii(g, at)[2], [expected["R_start"], expected["R_pitch"], expected["R_end"]], rtol=1e-12
     )
     inside = np.linspace(0.0, g.path_length, 7)
-    np.testing.assert_allclose(place_of_arc(g, flank_arc(g, inside)), inside, rtol=1e-12, atol=1e-18)
+    np.testing.assert_allclose(position_of_arc(g, flank_arc(g, inside)), inside, rtol=1e-12, atol=1e-18)
     outside = flank_arc(g, [-1e-6, g.path_length + 1e-6])
     np.testing.assert_allclose(outside, [expected["s_lo"], expected["s_hi"]], rtol=1e-12)
 

@@ -178,7 +178,7 @@ ratio, approach = 1.6, 0.7
 marks, coast = mesh_marks.MARKS, 2.0 * approach + 0.5
 scene = SimpleNamespace(contact_ratio=ratio, coast_phase=coast, marks=marks, time_unit=1.0, length_unit=1.0)
 extremes = SimpleNamespace(mesh_exits=0)
-m = SimpleNamespace(scene=scene, state=SimpleNamespace(turns=0.0, extremes=extremes))
+m = SimpleNamespace(scene=scene, state=SimpleNamespace(whole_pitches=0.0, extremes=extremes))
 events, count = np.zeros((99, EVENT_NUMBERS)), 0
 for sign in (1.0, -1.0):
     mesh_marks.set_marks(m, sign * -0.01)

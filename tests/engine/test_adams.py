@@ -40,7 +40,7 @@ def walk(times, state, rates, order):
         a.new_differences[0, :n] = rates(t)
         adams.set_differences(a, t - before)
         yp = np.empty(n)
-        adams.keep(a, t, yp)
+        adams.store_step(a, t, yp)
         np.testing.assert_array_equal(yp, rates(t))
     return a, cj, wanted, state(times[-1]) + correction
 
@@ -103,7 +103,7 @@ def test_a_step_that_was_not_accepted_leaves_no_trace():
     before = a.copy()
     adams.rates_at_end(1, a, 0.3, 3, np.array([0.7]), np.empty(1))
     adams.set_differences(a, 0.3)
-    adams.keep(a, 0.7, np.empty(1))
+    adams.store_step(a, 0.7, np.empty(1))
     for part in ("time", "last_step", "n_history", "state", "time_lags", "differences"):
         np.testing.assert_array_equal(a[part], before[part])
 

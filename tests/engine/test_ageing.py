@@ -111,7 +111,7 @@ def test_a_train_starts_at_the_couple_of_its_time_at_rest(rise, rest, couple):
 
         surplus(brentq(surplus, y[0], y[0] + 6.0, xtol=1e-14, rtol=1e-15))
         y[1] = y[3] = 0.0
-        m.state.initial_lead = y[0]  # the pinion has not turned
+        m.state.initial_pinion_lead = y[0]  # the pinion has not turned
         m.state.ageing.way[0] = y[2] / m.scene.phase_rate + y[0]
         assert (rest_reserve(m, 0.0, y) >= 0.0) == holds
 

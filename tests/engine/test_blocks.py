@@ -80,7 +80,7 @@ def test_a_block_of_slow_steps_ends_after_a_few(monkeypatch):
     monkeypatch.setattr(drivers, "_ready", set())
     began = next(clock)
     drivers.ready_driver("native", make_problem(SCENE))
-    assert (next(clock) - began - 1) / 2 <= drivers.TINY_BLOCKS
+    assert (next(clock) - began - 1) / 2 <= drivers.COMPILING_BLOCKS
 
 
 COUNTS = ("steps", "residual_evaluations", "jacobian_evaluations", "guard_evaluations", "error_test_failures")

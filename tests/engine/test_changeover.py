@@ -41,7 +41,7 @@ def test_all_of_the_state_is_carried_over():
         ):  # apart from each other, and as they can be together
             state.energy[name] += place / 16
         state.progress.steps, state.progress.flight_steps = 11, 5
-        state.turns = 64.0
+        state.whole_pitches = 64.0
 
     rigid, bodies, _ = carried(mark)
     old, new = rigid.model.state, bodies.model.state

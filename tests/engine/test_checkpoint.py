@@ -12,7 +12,7 @@ import pytest
 import gearidae as gd
 from gearidae.engine import portable
 from gearidae.engine.backend import run_blocks
-from gearidae.engine.elastic.rows import JOINED, row_of
+from gearidae.engine.elastic.node_rows import JOINED, row_of
 from gearidae.engine.integrate.driver import Ending
 from gearidae.engine.model.record_types import INT
 from gearidae.engine.model.state import MATERIALS, STATE, STATE_FIELDS, U, V

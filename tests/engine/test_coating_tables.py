@@ -36,7 +36,7 @@ def test_the_engine_reads_the_tooth_and_place_of_a_pair(coast):
     m = make_problem(sides(SHORT, PINION, GEAR)).model
     ratio = SHORT.geometry.contact_ratio
     for turns, pair, place in [(0, 0, 0.0), (5, 3, 0.31), (1900, -2, 0.5), (77, -40, 0.73), (10**9, 7, 1.0)]:
-        m.state.turns = turns
+        m.state.whole_pitches = turns
         teeth = met_teeth(turns + pair, coast=bool(coast))
         fractions = [
             fraction_at(table, tooth, place) for table, tooth in zip((PINION, GEAR), teeth, strict=True)

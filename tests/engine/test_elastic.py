@@ -13,7 +13,7 @@ from gearidae.engine import backend, native, portable, solve
 from gearidae.engine.backend import run_blocks
 from gearidae.engine.changeover import change_over
 from gearidae.engine.elastic import layout as elastic
-from gearidae.engine.elastic.rows import JOINED, row_of
+from gearidae.engine.elastic.node_rows import JOINED, row_of
 from gearidae.engine.integrate.driver import Ending
 from gearidae.engine.model.state import PHASE, V
 from gearidae.engine.motion.block_jacobian import (

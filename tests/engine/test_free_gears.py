@@ -38,7 +38,7 @@ def free_gears(changes, start=0.0):
     problem.prepare(1e-6, 2)
     PROBLEMS.append(problem)
     zero = BLANK._replace(time=start, free_time=start, free_grown=start, grown=start)
-    return FreeGears(problem.model, problem.addresses.place, zero, problem.judge.knots()), scene
+    return FreeGears(problem.model, problem.addresses.base, zero, problem.judge.knots()), scene
 
 
 DRIVES = {

@@ -29,7 +29,7 @@ def test_the_gear_stays_where_it_is_to_the_last_bit(model, method, backend):
     m, rtol = problem.model, 1e-6
     words = [block.checkpoint for block in ready_driver(backend, problem)(problem, rtol, 11, Statistics())]
     _, y = problem.restored(words[-1])
-    assert y[PHASE] == y[W] == m.state.turns == 0.0
+    assert y[PHASE] == y[W] == m.state.whole_pitches == 0.0
     assert m.state.flank_in_reach[COAST] == 0
     assert m.state.extremes.mesh_exits == 0
     assert y[V] < 0.0  # it has rebounded

@@ -13,7 +13,7 @@ from gearidae.engine.setup.build import make_problem
 from gearidae.engine.step import advance
 from gearidae.engine.sundials import interpolation
 from gearidae.engine.sundials import names as sun
-from gearidae.engine.sundials.ida_memory import IDA, YP, Places, Y, close_solver, open_solver
+from gearidae.engine.sundials.ida_memory import IDA, YP, FunctionOffsets, Y, close_solver, open_solver
 
 SHARES = (0.0, 0.1, 0.5, 0.9, 1.0)
 STEPS = 40
@@ -24,8 +24,8 @@ def stepped():
     """A run of the fast gears with IDA's own formulas, and the beginning of its last step."""
     problem = make_problem(gd.preset("teodorescu2009"))
     s = native.make_arrays(problem, problem.prepare(1e-6, 0), True)
-    places = Places(sun.places(), sun.newton_places())
-    functions, place = callbacks(s.y.size, False, True), problem.addresses.place
+    places = FunctionOffsets(sun.linear_solver_offsets(), sun.newton_offsets())
+    functions, place = callbacks(s.y.size, False, True), problem.addresses.base
     out = native.Output.empty(len(problem.columns))
     try:
         vectors = (s.y, s.yp, s.dky)

@@ -37,4 +37,4 @@ def test_a_phase_that_has_crossed_a_mark_is_on_its_far_side(path, coast, start, 
         assert cross_mark(m, 0.0, y, events, 0) >= 1
         rebase(m, y)
         assert m.state.mesh_mark_below < y[PHASE] < m.state.mesh_mark_above
-    assert way * (y[PHASE] + m.state.turns - start) > 20.0  # four marks a pitch, at most
+    assert way * (y[PHASE] + m.state.whole_pitches - start) > 20.0  # four marks a pitch, at most

@@ -7,7 +7,7 @@ import gearidae as gd
 from gearidae.engine import backend, outlook, solve
 from gearidae.engine.backend import run_blocks
 from gearidae.engine.changeover import to_rigid
-from gearidae.engine.elastic.rows import first_unknown
+from gearidae.engine.elastic.node_rows import first_unknown
 from gearidae.engine.model.state import EMPTY, STATE, V
 from gearidae.engine.pairs.tooth_pairs import nearest_gap
 from gearidae.engine.setup import build

@@ -6,9 +6,15 @@ import pytest
 import gearidae as gd
 from gearidae.engine import solve
 from gearidae.engine.elastic import newton_step as newton
-from gearidae.engine.elastic.newton_step import FOLLOW, STEP, equation_space, influence_space, newton_step
+from gearidae.engine.elastic.newton_step import (
+    DEFLECTION_SLOPE,
+    NEWTON_STEP,
+    equation_space,
+    influence_space,
+    newton_step,
+)
+from gearidae.engine.elastic.node_rows import JOINED, PRESSURE, first_unknown, row_of
 from gearidae.engine.elastic.nodes import influence, node_force, stiffness_matrix
-from gearidae.engine.elastic.rows import JOINED, PRESSURE, first_unknown, row_of
 from gearidae.engine.elastic.static_condensation import begin_deflections, condense_pair, predict
 from gearidae.engine.model.state import U, V
 from gearidae.engine.motion.pair_forces import finish_deflections, mesh_forces, set_deflections
@@ -111,13 +117,16 @@ def test_a_step_solves_newtons_equations(monkeypatch, softness, mild):
         first, second = left.copy(), follow.copy()
         assert newton_step(m, k, y)  # which leaves the loads' slopes where they are
         slopes, kappa = (equation_space(m, place) for place in (5, 7))
-        pad = [np.concatenate([x, np.zeros(equation_space(m, STEP).size - x.size)]) for x in (first, second)]
+        pad = [
+            np.concatenate([x, np.zeros(equation_space(m, NEWTON_STEP).size - x.size)])
+            for x in (first, second)
+        ]
         assert newton._eliminate(m, slopes, kappa, *pad)
-        equation_space(m, STEP)[:], equation_space(m, FOLLOW)[:] = pad
+        equation_space(m, NEWTON_STEP)[:], equation_space(m, DEFLECTION_SLOPE)[:] = pad
     n = left.size
     exact = np.linalg.solve(matrix, np.column_stack([left, follow]))
     # the series ends at 1e-7 of its sum
-    for place, column in ((STEP, 0), (FOLLOW, 1)):
+    for place, column in ((NEWTON_STEP, 0), (DEFLECTION_SLOPE, 1)):
         result = equation_space(m, place)[:n]
         np.testing.assert_allclose(
             result, exact[:, column], rtol=0, atol=3e-7 * np.abs(exact[:, column]).max()

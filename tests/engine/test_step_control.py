@@ -65,7 +65,7 @@ def after(h, order, rates, known=9, n=2):
         a.new_differences[0, :n] = rates[k]
         if k < len(rates) - 1:
             adams.set_differences(a, h)
-            adams.keep(a, k * h, np.empty(n))
+            adams.store_step(a, k * h, np.empty(n))
     return m
 
 

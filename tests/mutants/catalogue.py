@@ -155,8 +155,8 @@ MUTANTS = (
     Mutant(
         "coast flank that pushes like the drive flank",
         "engine/pairs/pair_force.py",
-        "1.0 - 2.0 * pair.coast",
-        "1.0 + 0.0 * pair.coast",
+        "1.0 - 2.0 * pair.flank",
+        "1.0 + 0.0 * pair.flank",
         MESH,
     ),
     Mutant(
@@ -197,8 +197,8 @@ MUTANTS = (
     Mutant(
         "curvature of the static error left out",
         "engine/motion/residual.py",
-        "+= s.error.pinion_bend * s.turn * s.turn",
-        "+= 0.0 * s.turn",
+        "s.error.pinion_curvature * s.surface_speed * s.surface_speed",
+        "0.0 * s.surface_speed",
         SHAFTS,
     ),
     Mutant(
@@ -316,7 +316,7 @@ MUTANTS = (
     Mutant(
         "a joining loss recorded at the turning point, and taken from the radius's power at the next look",
         "engine/observers/adhesion_loss.py",
-        "            _accumulate_before(m, coast, pair, y[PHASE], losses)",
+        "            _accumulate_before(m, flank, pair, y[PHASE], losses)",
         "            pass",
         ("engine/test_energy_balance.py",),
     ),
@@ -365,7 +365,7 @@ MUTANTS = (
     Mutant(
         "what was filled in the holes of a measured surface counted as measured",
         "surfaces/statistics.py",
-        "            inside &= far[np.ix_(*places)]",
+        "            inside &= far[np.ix_(*indices)]",
         "            pass",
         ("surfaces/test_measured.py",),
     ),
@@ -413,22 +413,22 @@ MUTANTS = (
     ),
     Mutant(
         "a contact that comes and turns between two looks at the exposures not counted",
-        "engine/observers/exposures/follow.py",
+        "engine/observers/exposures/accumulation.py",
         "    if exposure.known == 0 or exposure.pair != pair or exposure.time < before:\n",
         "    if exposure.pair != pair:\n",
         ("engine/test_exposures.py::test_contacts_count_that_come_and_turn_between_two_looks",),
     ),
     Mutant(
         "sliding work not ended at a separation",
-        "engine/observers/exposures/follow.py",
-        "        _touch(m, t, y, yp, coast, pair, k)\n",
+        "engine/observers/exposures/accumulation.py",
+        "        _touch(m, t, y, yp, flank, pair, k)\n",
         "        pass\n",
         ("engine/test_exposures.py::test_sliding_work_of_short_contacts",),
     ),
     Mutant(
         "what a contact has joined not shortened by the lag of its length",
         "engine/observers/exposures/contacts.py",
-        "    return h.lag / lost if lost > 0.0 else 0.0\n",
+        "    return h.adhesion_lag / lost if lost > 0.0 else 0.0\n",
         "    return 0.0\n",
         ("engine/test_exposures.py::test_adhesion_work_adds_up_to_the_loss",),
     ),
@@ -549,15 +549,15 @@ MUTANTS = (
     Mutant(
         "sliding of the flanks with levers that do not change along the path",
         "engine/friction/pairs.py",
-        "rate = w * (m.scene.friction.pinion_bend * turn + m.scene.friction.gear_bend * w)",
-        "rate = 0.0 * w * turn",
+        "rate = w * (m.scene.friction.pinion_lever_slope * surface_speed + m.scene.friction.gear_lever_slope * w)",
+        "rate = 0.0 * w * surface_speed",
         ("engine/test_friction.py::test_the_balance_closes_with_friction",),
     ),
     Mutant(
         "shares of the pairs in the loss to friction equal in place of those of the mean law",
         "mesh/friction.py",
-        "share = (places < length) * (1.0 if equal_shares else np.sqrt(reduced))",
-        "share = (places < length) * np.ones_like(reduced)",
+        "share = (positions < length) * (1.0 if equal_shares else np.sqrt(reduced))",
+        "share = (positions < length) * np.ones_like(reduced)",
         ("mesh/test_friction.py::test_numbers_of_the_preset",),
     ),
     Mutant(
@@ -586,8 +586,8 @@ MUTANTS = (
     Mutant(
         "attraction along the path of contact with the other sign",
         "engine/laws/attraction.py",
-        "-path, -by_gap, -by_place",
-        "path, -by_gap, -by_place",
+        "-path, -by_gap, -by_position",
+        "path, -by_gap, -by_position",
         ("engine/test_attraction.py::test_gears_apart_are_pulled_by_both_flanks_and_along_the_path",),
     ),
     Mutant(
@@ -628,7 +628,7 @@ MUTANTS = (
     Mutant(
         "a pair that rolls without the change of its levers",
         "engine/friction/forces.py",
-        "held = (first * on_pinion - second * on_gear + pairs.bend) / inertia",
+        "held = (first * on_pinion - second * on_gear + pairs.sliding_rate) / inertia",
         "held = (first * on_pinion - second * on_gear) / inertia",
         ("engine/test_hub_load.py::test_a_pair_that_rolls_goes_on_rolling_while_its_levers_change",),
     ),

@@ -128,7 +128,7 @@ def test_which_pair_is_called_which_does_not_matter(pitches):
     for shift in (0, pitches):
         problem = make_problem(BASE.replace({"initial.gap": 3e-8, "coating.sam_fraction": 0.5}))
         problem.start[PHASE] += shift
-        begin(problem.addresses.place, 0.0, problem.start)
+        begin(problem.addresses.base, 0.0, problem.start)
         statistics = Statistics()
         blocks = list(run_blocks(problem, 1e-8, 41, "native", statistics))
         assert statistics.ending is Ending.FINISHED

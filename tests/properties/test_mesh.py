@@ -44,7 +44,7 @@ def forces(u, v, phase, w):
     """Forces of a start from there, all contacts fresh."""
     problem = PROBLEM.shortened(1.0)  # a copy
     m, y = problem.model, np.array([u, v, phase, w])
-    begin(problem.addresses.place, 0.0, y)
+    begin(problem.addresses.base, 0.0, y)
     return np.array(mesh_forces(m, 0.0, y, False)[:2])
 
 
@@ -161,7 +161,7 @@ def test_jacobian_is_the_residuals_derivative(u, v, phase, w, cj):
     problem = SMOOTH.shortened(1.0)  # a copy
     m = problem.model
     y, yp, size = np.array([u, v, phase, w]), np.zeros(4), np.zeros(4)
-    begin(problem.addresses.place, 0.0, y)
+    begin(problem.addresses.base, 0.0, y)
     exact = np.empty(16)
     jacobian(m, 0.0, cj, y, exact)
     exact = exact.reshape(4, 4).T

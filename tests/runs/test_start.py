@@ -443,9 +443,9 @@ def kept(scene, words, start):
     power = energy / float(scene_units.time_unit)
     scaled = {
         "gap_rate": speed,
-        "lag": energy,
-        "lag_power": power,
-        "lag_rate": power / float(scene_units.time_unit),
+        "adhesion_lag": energy,
+        "adhesion_lag_power": power,
+        "adhesion_lag_power_rate": power / float(scene_units.time_unit),
     }
     rates = {name: np.sort(used[name]) * unit for name, unit in scaled.items()}
     numbers = {**extremes} | {f"energy {name}": value for name, value in balance.items()} | rates

@@ -349,7 +349,7 @@ def test_every_number_survives(tmp_path):
         for act in ("keep", "take"):
             with closing(RunCache(tmp_path / "a.nc", LOW, "native")) as cache:
                 if act == "keep":
-                    cache.keep(LOW, run)
+                    cache.store(LOW, run)
                 else:
                     back, *judged = cache.take(LOW)
         for mine, theirs in [

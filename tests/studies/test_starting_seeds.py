@@ -24,7 +24,7 @@ FEW = {"seeds": 2, "jobs": 1}
 
 def _barrier(seed, half=50e-9):
     """Two bare asperities `half` before and behind the start, among lower ones on every tooth that do not adhere."""
-    whole, phase = divmod(starting_ramp.place_of_seed(GEARS, seed), 1.0)
+    whole, phase = divmod(starting_ramp.phase_of_seed(GEARS, seed), 1.0)
     arc = Contact(GEARS).at(phase * GEARS.geometry.base_pitch)["arc"]
     low = np.arange(-0.5e-6, 7.2e-6, 100e-9)
     listed = {

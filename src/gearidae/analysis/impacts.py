@@ -133,7 +133,7 @@ def windows_of(signal: Signal, width: float) -> Floats:
     else:
         inside = (signal.exits >= time[0]) & (signal.exits <= time[-1])
         at = np.interp(signal.exits[inside], time, angle)
-    rows = [_window(time, angle, place, pitch, width) for place in at]
+    rows = [_window(time, angle, impact_angle, pitch, width) for impact_angle in at]
     return np.array(rows).reshape(-1, 3)
 
 
@@ -171,13 +171,13 @@ def _until_stop(signal: Signal, pitch: float) -> Signal:
 
 
 def _window(
-    time: Floats, angle: Floats, place: float, pitch: float, width: float
+    time: Floats, angle: Floats, impact_angle: float, pitch: float, width: float
 ) -> tuple[float, float, float]:
     """Time of the impact at an angle, and its window; NaN if it is not whole."""
-    first, last = place - LEAD * pitch, place + width * pitch
+    first, last = impact_angle - LEAD * pitch, impact_angle + width * pitch
     if first < angle[0] or last > angle[-1]:
         return math.nan, math.nan, math.nan
-    impact, start, stop = np.interp([place, first, last], angle, time)
+    impact, start, stop = np.interp([impact_angle, first, last], angle, time)
     return float(impact), float(start), float(stop)
 
 
@@ -262,8 +262,8 @@ class _Bursts:
             How many of them are whole.
         """
         pitch, last = self.pitch, float(self.angle[-1])
-        places = spacing * pitch * np.arange(_COMB) / _COMB
-        at = places[:, None] + spacing * pitch * np.arange((most or self.pitches) + 1)[None, :]
+        offsets = spacing * pitch * np.arange(_COMB) / _COMB
+        at = offsets[:, None] + spacing * pitch * np.arange((most or self.pitches) + 1)[None, :]
         whole = (at >= _REACH * pitch) & (at <= last - _REACH * pitch)
         until, before, after = (
             np.interp(at + shift * pitch, self.angle, self.energy) for shift in (0.0, -_REACH, _REACH)
@@ -274,7 +274,7 @@ class _Bursts:
         counts = np.maximum(1, whole.sum(axis=1))
         score = np.where(whole.any(axis=1), np.sum(growth, axis=1, where=whole) / counts, -np.inf)
         best = int(score.argmax())
-        return float(score[best]), float(places[best]), int(whole[best].sum())
+        return float(score[best]), float(offsets[best]), int(whole[best].sum())
 
     def best(self, low: float, high: float) -> tuple[float, float]:
         """Spacing from `low` to `high` [pitches] at which the growth is largest, and its score.

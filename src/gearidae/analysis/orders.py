@@ -145,7 +145,7 @@ def _step_means(path: Floats, values: Floats, edges: Floats, step: float) -> Flo
     parts = 0.5 * (values[1:] + values[:-1]) * np.diff(path)
     integral = np.concatenate([[0.0], np.cumsum(parts)])
     # inside an interval the integral of a straight line is a parabola, which interp alone would flatten
-    place = np.clip(np.searchsorted(path, edges, side="right") - 1, 0, len(path) - 2)
-    within = edges - path[place]
-    slope = (values[place + 1] - values[place]) / (path[place + 1] - path[place])
-    return np.asarray(np.diff(integral[place] + within * (values[place] + 0.5 * slope * within)) / step)
+    index = np.clip(np.searchsorted(path, edges, side="right") - 1, 0, len(path) - 2)
+    within = edges - path[index]
+    slope = (values[index + 1] - values[index]) / (path[index + 1] - path[index])
+    return np.asarray(np.diff(integral[index] + within * (values[index] + 0.5 * slope * within)) / step)

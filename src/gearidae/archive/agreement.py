@@ -53,14 +53,14 @@ def disagreement(ds: xr.Dataset, *, runs: bool = True, times: bool = True) -> st
         What is wrong, in one line, with its key; empty if nothing is.
     """
     try:
-        looks = (
+        checks = (
             _wrong_tables,
             *((_wrong_times,) if times else ()),
             *((_wrong_units,) if runs else ()),
             _wrong_labels,
             _wrong_start,
         )
-        return next((wrong for look in looks for wrong in look(ds)), "")
+        return next((wrong for check in checks for wrong in check(ds)), "")
     except (KeyError, TypeError, AttributeError) as error:  # tables of the right kind with other entries
         return f"its attributes do not fit together ({type(error).__name__}: {error})"
 

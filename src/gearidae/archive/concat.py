@@ -85,18 +85,18 @@ def concat(datasets: Iterable[xr.Dataset] | Mapping[str, xr.Dataset], dim: str) 
     members = [_Run(run, single_run(run)) for part in parts for _, run in runs(part)]
     scenes = [Scene.from_dict(scene_of(member.single)) for member in members]
     order = _order(axes, scenes)
-    scenes, members = [scenes[place] for place in order], [members[place] for place in order]
+    scenes, members = [scenes[index] for index in order], [members[index] for index in order]
     if dim != "name":
         _refuse_differences(scenes, [key for axis in axes for key in axis])
     _refuse_other_samples(members)
-    keep = kept_in(parts[0].attrs, scenes[0])
+    selection = kept_in(parts[0].attrs, scenes[0])
     for number, part in enumerate(parts):
         if part.attrs.get("keep") != parts[0].attrs.get("keep"):
             raise SceneError(
                 "keep", part.attrs.get("keep"), f"of {part_name(number)} must be that of the first"
             )
     base = Scene.from_dict(scene_of(parts[0]))
-    ds = stack(base, axes, scenes, [_solution(member.single) for member in members], keep=keep)
+    ds = stack(base, axes, scenes, [_solution(member.single) for member in members], selection=selection)
     ds = _with_exposures(_with_numbers(ds, parts, members), base, [member.picked for member in members])
     return ds.assign_attrs(
         history=history_of(parts, f"joined {len(parts)} datasets along {dim}"), **software_of(parts)
@@ -214,14 +214,14 @@ def _axes(parts: Sequence[xr.Dataset], key: str) -> list[Axis]:
     for number, value in enumerate(joined[leader]):
         if value in joined[leader][:number]:
             raise SceneError(leader, value, "stands in the datasets twice")
-    place = next((number for number, axis in enumerate(part_axes[0]) if key in axis), 0)
-    return [*rest[0][:place], joined, *rest[0][place:]]
+    index = next((number for number, axis in enumerate(part_axes[0]) if key in axis), 0)
+    return [*rest[0][:index], joined, *rest[0][index:]]
 
 
 def _order(axes: Sequence[Axis], scenes: Sequence[Scene]) -> list[int]:
     """Indices of the runs in the order of the whole: the last axis changes fastest."""
     shape = tuple(len(next(iter(axis.values()))) for axis in axes)
-    places: dict[int, int] = {}
+    number_at: dict[int, int] = {}
     for number, scene in enumerate(scenes):
         index = []
         for axis in axes:
@@ -230,8 +230,8 @@ def _order(axes: Sequence[Axis], scenes: Sequence[Scene]) -> list[int]:
             if value not in axis[leader]:
                 raise SceneError(leader, value, "is not among the values of the datasets")
             index.append(axis[leader].index(value))
-        places[int(np.ravel_multi_index(index, shape))] = number
-    return [places[number] for number in range(math.prod(shape))]
+        number_at[int(np.ravel_multi_index(index, shape))] = number
+    return [number_at[number] for number in range(math.prod(shape))]
 
 
 def _refuse_differences(scenes: Sequence[Scene], swept: Sequence[str]) -> None:

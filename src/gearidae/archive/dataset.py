@@ -124,7 +124,7 @@ def combine(
     scenes: Sequence[Scene],
     solutions: Sequence[Solution],
     *,
-    keep: OutputSelection = EVERYTHING,
+    selection: OutputSelection = EVERYTHING,
     samples: SampleTable | None = None,
 ) -> xr.Dataset:
     """Stack the runs of a sweep into one dataset.
@@ -138,7 +138,7 @@ def combine(
     scenes, solutions : sequence
         The runs in the order of ``itertools.product`` over the swept values (the last key changes fastest). A
         run that produced nothing has empty arrays and says why in its status.
-    keep : OutputSelection, optional
+    selection : OutputSelection, optional
         Which variables the dataset has; by default all.
     samples : SampleTable, optional
         Holds the samples, if the solutions do not.
@@ -157,27 +157,27 @@ def combine(
     labels = {names[key]: key_labels(key, names[key], values) for key, values in swept.items()}
     if samples is None:
         longest = max(len(solution.time) for solution in solutions)
-        samples = SampleTable(keep.columns(scene), len(solutions), longest)
+        samples = SampleTable(selection.columns(scene), len(solutions), longest)
         solutions = [samples.take(number, solution) for number, solution in enumerate(solutions)]
     variables: dict[Hashable, Any] = {
         name: ((*dims, "time"), table.reshape(*shape, -1), SAMPLES[name].attributes)
         for name, table in samples.columns().items()
     }
     for kind in ROWS:
-        if keep.holds_rows(kind):
+        if selection.holds_rows(kind):
             variables |= row_variables(kind, scenes, solutions, labels)
-    of_runs = _of_runs(scenes, solutions, keep)
+    of_runs = _of_runs(scenes, solutions, selection)
     totals = total_variables(scene, scenes, solutions, dims, shape)
     for name, (variable, values) in of_runs.items():
-        if keep.holds(name):
+        if selection.holds(name):
             variables[name] = (dims, values.reshape(shape), variable.attributes)
-    variables |= {name: entry for name, entry in totals.items() if keep.holds(str(name))}
+    variables |= {name: entry for name, entry in totals.items() if selection.holds(str(name))}
     exposures = exposure_variables(scene, scenes, solutions, dims, shape)
-    exposures = {name: entry for name, entry in exposures.items() if keep.holds(str(name))}
+    exposures = {name: entry for name, entry in exposures.items() if selection.holds(str(name))}
     variables |= exposures
 
     coords: dict[Hashable, Any] = {}
-    if keep.columns(scene):
+    if selection.columns(scene):
         coords["time"] = ("time", samples.time, TIME.attributes)
     coords.update(labels)
     if exposures:
@@ -188,7 +188,7 @@ def combine(
         coords=coords,
         attrs={
             **sweep_attributes(scene, swept, [solution.status for solution in solutions]),
-            **({} if keep.names is None else {"keep": json.dumps(keep.asked)}),
+            **({} if selection.names is None else {"keep": json.dumps(selection.asked)}),
             **statistics_attributes([solution.statistics for solution in solutions]),
             **surface_regimes(scene),
         },
@@ -209,24 +209,24 @@ def sweep_attributes(
 
 
 def _of_runs(
-    scenes: Sequence[Scene], solutions: Sequence[Solution], keep: OutputSelection
+    scenes: Sequence[Scene], solutions: Sequence[Solution], selection: OutputSelection
 ) -> dict[str, tuple[Variable, NDArray[Any]]]:
     """One value a run of what is kept: how it ended, its statistics and its input."""
     columns: dict[str, tuple[Variable, NDArray[Any]]] = {}
     for name, variable in RUN.items():
-        if not keep.holds(name):
+        if not selection.holds(name):
             continue
         source = [s if name in ("status", "message") else s.statistics for s in solutions]
         columns[name] = variable, np.array([getattr(holder, name) for holder in source], dtype=variable.dtype)
     columns["reached"] = OF_SWEPT_RUN["reached"], np.array([reached(solution) for solution in solutions])
     contacts = [_contacts(scene, solution) for scene, solution in zip(scenes, solutions, strict=True)]
     for variable in CONTACT:
-        if keep.holds(variable.name):
+        if selection.holds(variable.name):
             columns[variable.name] = variable, np.array([contact[variable.name] for contact in contacts])
-    if keep.holds("skipped"):
+    if selection.holds("skipped"):
         skipped = [json.dumps(solution.statistics.skipped, default=int) for solution in solutions]
         columns["skipped"] = OF_SWEPT_RUN["skipped"], np.array(skipped)
-    if keep.holds("scene"):
+    if selection.holds("scene"):
         inputs = np.empty(
             len(scenes), dtype=object
         )  # in an array of text every entry is as long as the longest

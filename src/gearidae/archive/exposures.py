@@ -108,13 +108,13 @@ def exposure_variables(
         Name to dimensions, values and attributes; NaN where a run produced nothing. Empty if the scene asks for none,
         or the runs do not have the same bins.
     """
-    places = {
+    shapes = {
         (member.run.exposures, member.gears and member.gears.pinion_teeth, len(member.materials()))
         for member in (scene, *scenes)
     }
     if (
         scene.run.exposures == 0
-        or len(places) > 1
+        or len(shapes) > 1
         or all(solution.extremes is None for solution in solutions)
     ):
         return {}
@@ -151,7 +151,7 @@ def _per_area(scene: GearScene, solution: Solution) -> dict[str, Floats]:
     ]
     if scene.contact.is_discrete:
         # each asperity has been counted, in bins that its material covers
-        shares = _shares_by_place(scene)
+        shares = _shares_by_position(scene)
         contacts = np.divide(contacts, shares, out=np.zeros_like(contacts), where=shares > 0.0)
     else:
         contacts *= surface.asperity_density * width * unit
@@ -164,15 +164,15 @@ def _per_area(scene: GearScene, solution: Solution) -> dict[str, Floats]:
     }
 
 
-def _shares_by_place(scene: GearScene) -> Floats:
+def _shares_by_position(scene: GearScene) -> Floats:
     """Share of each material in each bin of the pinion's teeth, the mean over the gear's teeth that they meet.
 
     Returns
     -------
     ndarray, shape (flanks, materials, teeth, bins)
     """
-    gears, places = scene.gears, scene.run.exposures
-    along = (np.arange(_POINTS * places) + 0.5) / (_POINTS * places)
+    gears, bins = scene.gears, scene.run.exposures
+    along = (np.arange(_POINTS * bins) + 0.5) / (_POINTS * bins)
     teeth, flanks = np.arange(gears.pinion_teeth), np.arange(len(FLANKS))
     pinion, gear = scene.coating.tables
     first = fraction_at(pinion, teeth[:, None], along)
@@ -183,4 +183,4 @@ def _shares_by_place(scene: GearScene) -> Floats:
     second = second[(teeth + flanks[:, None]) % meets]
     parts = interface_shares(scene.coating.pairing, np.broadcast_to(first, second.shape), second)
     shares = np.stack([parts[material.name] for material in scene.materials()], axis=1)
-    return np.asarray(shares.reshape(*shares.shape[:-1], places, _POINTS).mean(axis=-1))
+    return np.asarray(shares.reshape(*shares.shape[:-1], bins, _POINTS).mean(axis=-1))

@@ -56,9 +56,9 @@ def check_seal(path: Path) -> None:
     with path.open("rb") as file:
         file.seek(max(size - 2 * _SEAL, 0))
         tail = file.read()
-    if (place := tail.rfind(_MARK)) < 0:
+    if (offset := tail.rfind(_MARK)) < 0:
         return
-    length, numbers = size - len(tail) + place, tail[place + len(_MARK) :]
+    length, numbers = size - len(tail) + offset, tail[offset + len(_MARK) :]
     if len(numbers) != _SEAL - len(_MARK) or int.from_bytes(numbers[:8], "little") != length:
         raise ValueError("its end is missing or altered")
     if _checksum_of(path, length) != int.from_bytes(numbers[8:], "little"):

@@ -44,9 +44,9 @@ class WriterLock:
         archive : Path
             It need not exist yet; its folder must.
         """
-        place = _beside(archive)
+        lock_path = _beside(archive)
         # any thread may release it; on a file system without locks nothing is gained by a file that outlives a crash
-        wanted = FileLock(place, thread_local=False, fallback_to_soft=False)
+        wanted = FileLock(lock_path, thread_local=False, fallback_to_soft=False)
         try:
             wanted.acquire(timeout=_PATIENCE, poll_interval=0.005)
         except Timeout:

@@ -266,11 +266,11 @@ def _expected(ds: xr.Dataset, scene: dict[str, Any]) -> tuple[str, ...]:
     if "keep" not in ds.attrs:
         return (*always, "time", *sampled, *rows)
     try:
-        keep = kept_in(ds.attrs, Scene.from_dict(scene))
+        selection = kept_in(ds.attrs, Scene.from_dict(scene))
     except SceneError as error:
         raise SceneError("archive", ds.encoding.get("source", ""), f"is damaged: {error}") from None
-    some = tuple(name for name in sampled if keep.holds(name))
-    return (*always, *(("time",) if some else ()), *some, *filter(keep.holds, rows), "status", *_JUDGED)
+    some = tuple(name for name in sampled if selection.holds(name))
+    return (*always, *(("time",) if some else ()), *some, *filter(selection.holds, rows), "status", *_JUDGED)
 
 
 class CheckedStore(xr.backends.NetCDF4DataStore):

@@ -164,7 +164,7 @@ def own_rows(ds: xr.Dataset) -> xr.Dataset:
     return ds
 
 
-def row_places(ds: xr.Dataset, dims: tuple[str, ...]) -> dict[str, list[Any]]:
+def row_indices(ds: xr.Dataset, dims: tuple[str, ...]) -> dict[str, list[Any]]:
     """Indices of each run's rows, found in one pass, by the rows' dimensions.
 
     Those are left out of which labels do not tell the runs apart.
@@ -178,8 +178,8 @@ def row_places(ds: xr.Dataset, dims: tuple[str, ...]) -> dict[str, list[Any]]:
         labels = [f"{kind.dim}_{dim}" for dim in dims]
         if any(label not in ds.variables for label in labels):
             continue
-        places = [index.get_indexer(ds[label].values) for index, label in zip(indexes, labels, strict=True)]
-        number = np.ravel_multi_index(places, shape) if len(places[0]) else np.empty(0, dtype=np.int64)
+        indices = [index.get_indexer(ds[label].values) for index, label in zip(indexes, labels, strict=True)]
+        number = np.ravel_multi_index(indices, shape) if len(indices[0]) else np.empty(0, dtype=np.int64)
         order = np.argsort(number, kind="stable")
         bounds = pairwise(np.searchsorted(number[order], np.arange(int(np.prod(shape)) + 1)))
         if np.array_equal(order, np.arange(len(order))):

@@ -13,7 +13,7 @@ from gearidae.archive.attributes import complete_scene
 from gearidae.archive.dataset import dimension_names
 from gearidae.archive.pieces import reached
 from gearidae.archive.provenance import provenance, surface_regimes
-from gearidae.archive.row_variables import DIMS, LABELS, kinds_in, own_rows, row_places
+from gearidae.archive.row_variables import DIMS, LABELS, kinds_in, own_rows, row_indices
 from gearidae.archive.variables import EXTREMES, OF_SWEPT_RUN, RUN, SAM_FRACTION, SAMPLES, run_label
 from gearidae.errors import SceneError
 from gearidae.records import sampled_columns
@@ -138,11 +138,11 @@ def runs(ds: xr.Dataset) -> Iterator[tuple[dict[str, Any], xr.Dataset]]:
     """
     dims = swept_dims(ds)
     ds = own_rows(ds)
-    rows = row_places(ds, dims)
+    rows = row_indices(ds, dims)
     all_told = all(kind.dim in rows for kind in kinds_in(ds))
-    for number, place in enumerate(np.ndindex(*(ds.sizes[dim] for dim in dims))):
-        run = ds.isel(dict(zip(dims, place, strict=True)))
-        run = run.isel({dim: places[number] for dim, places in rows.items()})
+    for number, index in enumerate(np.ndindex(*(ds.sizes[dim] for dim in dims))):
+        run = ds.isel(dict(zip(dims, index, strict=True)))
+        run = run.isel({dim: indices[number] for dim, indices in rows.items()})
         run = run if all_told else own_rows(run)
         yield {dim: run[dim].values.item() for dim in dims}, run
 

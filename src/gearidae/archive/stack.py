@@ -29,7 +29,7 @@ def stack(
     scenes: Sequence[Scene],
     solutions: Sequence[Solution],
     *,
-    keep: OutputSelection = EVERYTHING,
+    selection: OutputSelection = EVERYTHING,
     samples: SampleTable | None = None,
 ) -> xr.Dataset:
     """Put runs into one dataset.
@@ -42,7 +42,7 @@ def stack(
         For each dimension, the values of its keys in SI units; several keys where they are zipped.
     scenes, solutions : sequence
         One for each run; the last axis changes fastest.
-    keep : OutputSelection, optional
+    selection : OutputSelection, optional
         Which variables the dataset has; by default all.
     samples : SampleTable, optional
         Holds the samples, if the solutions do not.
@@ -52,7 +52,7 @@ def stack(
     xarray.Dataset
         See `gearidae.sweep`.
     """
-    ds = combine(base, leaders_of(axes), scenes, solutions, keep=keep, samples=samples)
+    ds = combine(base, leaders_of(axes), scenes, solutions, selection=selection, samples=samples)
     return with_zipped(ds, base, axes)
 
 

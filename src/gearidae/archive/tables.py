@@ -140,8 +140,8 @@ def run_labels(ds: xr.Dataset, dims: tuple[str, ...]) -> dict[str, Any]:
         map(str, along),
         key=lambda coordinate: (coordinate not in dims, dims.index(str(ds[coordinate].dims[0]))),
     ):
-        place = dims.index(str(ds[name].dims[0]))
-        spread = np.unravel_index(np.arange(math.prod(shape)), shape)[place]
+        axis = dims.index(str(ds[name].dims[0]))
+        spread = np.unravel_index(np.arange(math.prod(shape)), shape)[axis]
         labels[name] = ds[name].values[spread]
     return labels
 

@@ -56,9 +56,9 @@ def as_path(path: str | os.PathLike[str], name: str = "archive") -> Path:
         If it is no file name, or has characters that this locale's encoding lacks.
     """
     try:
-        place = Path(path)
-        str(place).encode(sys.getfilesystemencoding())
-        if "\0" in str(place):
+        target = Path(path)
+        str(target).encode(sys.getfilesystemencoding())
+        if "\0" in str(target):
             raise TypeError
     except TypeError:
         raise SceneError(name, path, "must be a file name") from None
@@ -66,7 +66,7 @@ def as_path(path: str | os.PathLike[str], name: str = "archive") -> Path:
         shown = ascii(os.fspath(path)).strip("'\"")
         allowed = f"must be a name in this locale's encoding ({sys.getfilesystemencoding()})"
         raise SceneError(name, shown, allowed) from None
-    return place
+    return target
 
 
 def check_target(

@@ -87,13 +87,13 @@ class TimeIndex(xr.Index):
             return IndexSelResult({self._name: slice(first, last)})
         wanted = label.variable if isinstance(label, xr.DataArray) else label
         values = numbers_of(wanted, "s")
-        places = np.array(
-            [self._place(float(time), method, tolerance) for time in values.ravel()], dtype=np.int64
+        indices = np.array(
+            [self._index_of(float(time), method, tolerance) for time in values.ravel()], dtype=np.int64
         )
-        chosen: Any = places.reshape(values.shape)
+        chosen: Any = indices.reshape(values.shape)
         if isinstance(wanted, xr.Variable):
             chosen = xr.Variable(wanted.dims, chosen)
-        return IndexSelResult({self._name: chosen if values.ndim else int(places[0])})
+        return IndexSelResult({self._name: chosen if values.ndim else int(indices[0])})
 
     def equals(self, other: xr.Index, *, exclude: frozenset[Hashable] | None = None) -> bool:
         """Whether another index has the same labels."""
@@ -128,8 +128,8 @@ class TimeIndex(xr.Index):
         times.dims = (dims_dict.get(self._name, self._name),)
         return type(self)(name_dict.get(self._name, self._name), times)
 
-    def _at(self, place: int) -> float:
-        return float(self._times[place].values)
+    def _at(self, index: int) -> float:
+        return float(self._times[index].values)
 
     def _before(self, wanted: float) -> int:
         """Position of the first label that is not smaller."""
@@ -139,7 +139,7 @@ class TimeIndex(xr.Index):
         """Position of the first label that is larger."""
         return bisect_right(range(self._times.size), wanted, key=self._at)
 
-    def _place(self, wanted: float, method: str | None, tolerance: float | None) -> int:
+    def _index_of(self, wanted: float, method: str | None, tolerance: float | None) -> int:
         """Position of one label."""
         if method not in _METHODS:
             raise ValueError(f"method must be one of {', '.join(filter(None, _METHODS))}")
@@ -151,12 +151,12 @@ class TimeIndex(xr.Index):
             around = ()
         elif _METHODS[method] is not None:
             around = (after + int(_METHODS[method] or 0),)
-        inside = [place for place in around if 0 <= place < self._times.size]
+        inside = [index for index in around if 0 <= index < self._times.size]
         if tolerance is not None:
-            inside = [place for place in inside if abs(self._at(place) - wanted) <= tolerance]
+            inside = [index for index in inside if abs(self._at(index) - wanted) <= tolerance]
         if not inside:
             raise KeyError(wanted)
-        return min(inside, key=lambda place: (abs(self._at(place) - wanted), -place))
+        return min(inside, key=lambda index: (abs(self._at(index) - wanted), -index))
 
 
 _METHODS: dict[str | None, int | None] = {

@@ -360,8 +360,8 @@ class RunJournal:
 
         return derived
 
-    def _column(self, field: str, place: int, number: int, first: int, last: int) -> NDArray[Any]:
-        before = place * self._frames[number].shapes[field][1]
+    def _column(self, field: str, column: int, number: int, first: int, last: int) -> NDArray[Any]:
+        before = column * self._frames[number].shapes[field][1]
         return self._journal.values(self._frames[number], field, before + first, before + last)
 
     def _times(self, _: int, first: int, last: int) -> NDArray[np.float64]:

@@ -23,7 +23,7 @@ Model = Callable[["Scene"], float]
 STICKS: Final = "sticks"
 RING: Final = "ring_frequency"
 _MISJUDGED: Final = 0.02
-_SHARE: Final = Quantity(unit="1", above=0.0, at_most=0.5)
+_MISJUDGED_SHARE: Final = Quantity(unit="1", above=0.0, at_most=0.5)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -67,7 +67,7 @@ class Observation:
                 raise SceneError(
                     "value", shorten(self.value), "must be True or False: whether the gear stuck"
                 )
-            object.__setattr__(self, "misjudged", _SHARE.take("misjudged", self.misjudged))
+            object.__setattr__(self, "misjudged", _MISJUDGED_SHARE.take("misjudged", self.misjudged))
             return
         try:
             refuse_bare((self.value, self.uncertainty))

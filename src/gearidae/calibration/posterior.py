@@ -202,8 +202,8 @@ def summary(
     deviation = np.maximum(np.sqrt(weight @ (nodes - mean) ** 2), within)
     quantiles = np.empty((len(keys), len(LEVELS)))
     for number in range(len(keys)):
-        values, place = np.unique(nodes[:, number], return_inverse=True)
-        share = np.cumsum(np.bincount(place, weight))
+        values, index = np.unique(nodes[:, number], return_inverse=True)
+        share = np.cumsum(np.bincount(index, weight))
         half = 0.5 * widths[number] if widths is not None else 0.0
         quantiles[number] = np.interp(LEVELS, np.r_[0.0, share], np.r_[values[0] - half, values + half])
     columns = (np.array(keys), np.array(LEVELS), mean, deviation, quantiles)

@@ -61,13 +61,13 @@ class Predictor:
             raise SceneError("conditions", fixed[0], f"cannot differ beside {RING}: runs share one time axis")
         self._base = base if self._sampled else base.replace({"run.samples": "off"})
         self._keys, self._observations, self._execution = keys, observations, execution
-        self._keep = read_keep(_SAMPLED if self._sampled else ("extremes",), self._base)
+        self._selection = read_keep(_SAMPLED if self._sampled else ("extremes",), self._base)
         self.kept: RunCache | None = None
         """Where finished runs are."""
 
     def store(self, archive: Path) -> RunCache:
         """Make the folder of finished runs beside an archive."""
-        return RunCache(archive, self._base, self._execution.driver, self._keep)
+        return RunCache(archive, self._base, self._execution.driver, self._selection)
 
     def figures(self, values: Floats, progress: bool | SweepProgress = False) -> Floats:
         """Predict all observations.
@@ -93,7 +93,7 @@ class Predictor:
         """
         predicted = np.full((len(values), len(self._observations)), math.nan)
         scenes: list[Scene] = []
-        place: dict[Scene, int] = {}
+        index: dict[Scene, int] = {}
         wanted: list[tuple[int, int, int]] = []
         for row, point in enumerate(values.tolist()):
             changed = self._base.replace(dict(zip(self._keys, point, strict=True)))
@@ -102,10 +102,10 @@ class Predictor:
                 if not isinstance(observation.of, str):
                     predicted[row, column] = float(observation.of(scene))
                     continue
-                if scene not in place:
-                    place[scene] = len(scenes)
+                if scene not in index:
+                    index[scene] = len(scenes)
                     scenes.append(scene)
-                wanted.append((row, column, place[scene]))
+                wanted.append((row, column, index[scene]))
         figures = self._run(scenes, progress) if scenes else []
         for row, column, number in wanted:
             predicted[row, column] = figures[number][str(self._observations[column].of)]
@@ -121,7 +121,7 @@ class Predictor:
             axis |= {key: [scene_value(scene, key) for scene in part] for key in self._varied}
             execution = replace(self._execution, progress=progress)
             read += self._read(
-                run_plan(SweepPlan(self._base, (axis,), part), execution, self.kept, self._keep)
+                run_plan(SweepPlan(self._base, (axis,), part), execution, self.kept, self._selection)
             )
         return read
 

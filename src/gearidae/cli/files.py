@@ -161,11 +161,11 @@ def _scene_rows(ds: xr.Dataset) -> Iterator[tuple[str, str, str]]:
         tables = {table: content}
         if table in ("shafts", "meshes"):
             tables = {f"{table}.{name}": entry for name, entry in content.items()}
-        for place, entries in tables.items():
+        for title, entries in tables.items():
             if isinstance(entries, dict):
                 for key, value in entries.items():
-                    unit = "" if isinstance(value, dict) else _unit(f"{place}.{key}")
-                    yield f"{place}.{key}", json.dumps(value), unit
+                    unit = "" if isinstance(value, dict) else _unit(f"{title}.{key}")
+                    yield f"{title}.{key}", json.dumps(value), unit
 
 
 def _values(coordinate: xr.DataArray) -> str:

@@ -72,8 +72,8 @@ def show_surface(surface: MeasuredSurface) -> None:
     rows = set(np.linspace(0, count - 1, min(count, _MOST_ROWS)).round().astype(int).tolist())
     if surface.cutoff is not None:
         rows.add(int(np.flatnonzero(ds["cutoff"].values == surface.cutoff)[0]))
-    for place in sorted(rows):
-        row = ds.isel(cutoff=place)
+    for index in sorted(rows):
+        row = ds.isel(cutoff=index)
         chosen = float(row["cutoff"]) == surface.cutoff
         table.add_row(*_cells(row, "> " if chosen else ""))
     show(table)

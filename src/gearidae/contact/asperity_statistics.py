@@ -51,7 +51,7 @@ def expected_asperities(gap: ArrayLike, radius: float, width: float, surface: Su
     return surface.asperity_density * width * math.sqrt(2.0 * radius * surface.roughness) * above
 
 
-def mean_square_place(gap: float, radius: float, surface: Surface) -> float:
+def mean_square_position(gap: float, radius: float, surface: Surface) -> float:
     r"""Mean square distance from the middle at which the asperities of an approaching contact touch.
 
     Parameters

@@ -36,7 +36,7 @@ Array = NDArray[np.float64]
 
 _TAIL = 5.5
 """Roughnesses of gap beyond which a node's share of the force is below the 1e-6 that the grid is made for."""
-_FAR = 13.0
+_FIRST_GAP = 13.0
 """Roughnesses of gap at which nothing touches yet."""
 
 
@@ -309,7 +309,7 @@ class _Contact:
             np.full((path.size, n), np.nan),
             np.full((path.size, n), np.nan),
         )
-        far = _FAR * self.layer.roughness + self.layer.reach
+        far = _FIRST_GAP * self.layer.roughness + self.layer.reach
         here = max(far, float(path[0]))
         gap = here + self.grid.x**2 / (2.0 * self.radius)
         joined = self.layer.far_apart(gap)

@@ -29,7 +29,7 @@ from gearidae.contact.heights import heights_of
 from gearidae.contact.rough import rough_pressure
 from gearidae.errors import SceneError
 
-_OUTERMOST, _INNERMOST, _STEP = 38.0, -8.0, 0.05
+_OUTERMOST, _INNERMOST, _GAP_STEP = 38.0, -8.0, 0.05
 """Gaps between which no load is looked for, and their distance, in roughnesses; the density of heights ends at 38."""
 
 
@@ -107,7 +107,7 @@ def zero_load_gap(surface: Surface, hamaker: float = 0.0, asperity: str = "jkr")
 
     sigma = surface.roughness
     reach = heights_of(surface, asperity).law.detach
-    gaps = np.arange(_OUTERMOST + reach, _INNERMOST, -_STEP) * sigma
+    gaps = np.arange(_OUTERMOST + reach, _INNERMOST, -_GAP_STEP) * sigma
     pressures = pressure(gaps)
     pushes, pulls = np.flatnonzero(pressures > 0.0), np.flatnonzero(pressures < 0.0)
     if not pulls.size:

@@ -30,9 +30,9 @@ from scipy import special
 # rule between, Bessel functions with the recurrence upwards in order right of _RIGHT.
 _LEFT, _RIGHT = -11.0, 1.0
 _SERIES_TERMS = 24
-_STEP = 1.0 / 12.0
-_NODES = np.arange(57) * _STEP
-_WEIGHTS = np.full(57, 2.0 * _STEP / math.sqrt(2.0 * math.pi))
+_NODE_SPACING = 1.0 / 12.0
+_NODES = np.arange(57) * _NODE_SPACING
+_WEIGHTS = np.full(57, 2.0 * _NODE_SPACING / math.sqrt(2.0 * math.pi))
 _WEIGHTS[0] *= 0.5
 
 

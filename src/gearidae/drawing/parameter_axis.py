@@ -24,7 +24,7 @@ class ParameterAxis:
 
     Attributes
     ----------
-    places : ndarray, shape (n,)
+    positions : ndarray, shape (n,)
         Where the values lie, in the unit of the label, in the dataset's order.
     label : str
         Name and unit.
@@ -36,7 +36,7 @@ class ParameterAxis:
         What values in SI are multiplied by.
     """
 
-    places: NDArray[np.float64]
+    positions: NDArray[np.float64]
     label: str
     words: tuple[str, ...] = ()
     limit: float | None = None
@@ -67,37 +67,42 @@ def cell_edges(along: ParameterAxis) -> NDArray[np.float64]:
 
     They are the middles between positions, and as far beyond the ends; of a logarithmic axis the geometric ones.
     """
-    places = np.sort(along.places)
+    positions = np.sort(along.positions)
     if is_logarithmic(along):
-        return np.asarray(np.exp(_middles(np.log(places))))
-    return _middles(places)
+        return np.asarray(np.exp(_middles(np.log(positions))))
+    return _middles(positions)
 
 
 def is_logarithmic(along: ParameterAxis) -> bool:
     """Whether the steps between the positions are too uneven for an even axis."""
-    steps = np.diff(np.sort(along.places))
-    if steps.size < 2 or np.min(along.places) <= 0.0 or steps.min() <= 0.0:
+    steps = np.diff(np.sort(along.positions))
+    if steps.size < 2 or np.min(along.positions) <= 0.0 or steps.min() <= 0.0:
         return False
     return bool(steps.max() > _UNEVEN * steps.min())
 
 
 def scale_axis(ax: Axes, which: Literal["x", "y"], along: ParameterAxis) -> None:
     """Give an axis of cells its scale, limits, label, and ticks at the values where there is room for all of them."""
-    edges, places = cell_edges(along), np.sort(along.places)
+    edges, positions = cell_edges(along), np.sort(along.positions)
     top = edges[-1] if along.limit is None else min(edges[-1], along.limit)
     if is_logarithmic(along):
         ax.set(**{f"{which}scale": "log"})
     ax.set(**{f"{which}lim": (edges[0], top), f"{which}label": along.label})
     if along.words:
         step = -(-len(along.words) // _MOST_NAMES)
-        ax.set(**{f"{which}ticks": along.places[::step], f"{which}ticklabels": along.words[::step]})
-    elif not is_logarithmic(along) and np.diff(places).min(initial=np.inf) * _MOST_NAMES >= top - edges[0]:
-        ax.set(**{f"{which}ticks": places, f"{which}ticklabels": [f"{place:.4g}" for place in places]})
+        ax.set(**{f"{which}ticks": along.positions[::step], f"{which}ticklabels": along.words[::step]})
+    elif not is_logarithmic(along) and np.diff(positions).min(initial=np.inf) * _MOST_NAMES >= top - edges[0]:
+        ax.set(
+            **{
+                f"{which}ticks": positions,
+                f"{which}ticklabels": [f"{position:.4g}" for position in positions],
+            }
+        )
 
 
-def _middles(places: NDArray[np.float64]) -> NDArray[np.float64]:
-    if places.size == 1:
-        half = 0.5 * abs(places[0]) or 0.5
-        return np.array([places[0] - half, places[0] + half])
-    middles = 0.5 * (places[1:] + places[:-1])
-    return np.concatenate([[2.0 * places[0] - middles[0]], middles, [2.0 * places[-1] - middles[-1]]])
+def _middles(positions: NDArray[np.float64]) -> NDArray[np.float64]:
+    if positions.size == 1:
+        half = 0.5 * abs(positions[0]) or 0.5
+        return np.array([positions[0] - half, positions[0] + half])
+    middles = 0.5 * (positions[1:] + positions[:-1])
+    return np.concatenate([[2.0 * positions[0] - middles[0]], middles, [2.0 * positions[-1] - middles[-1]]])

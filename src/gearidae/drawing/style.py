@@ -252,8 +252,8 @@ def thin(time: xr.DataArray, values: xr.DataArray, end: int | None = None) -> tu
         chosen = np.concatenate([extremes.T.ravel(), np.arange(whole, len(part))])
         kept.append(offset + chosen)
         heights.append(part[chosen])
-    places, once = np.unique(np.concatenate(kept), return_index=True)
-    return _picked(time, places), np.concatenate(heights)[once]
+    indices, once = np.unique(np.concatenate(kept), return_index=True)
+    return _picked(time, indices), np.concatenate(heights)[once]
 
 
 def new_axes(ax: Axes | None, *, height: float = 3.2) -> Axes:

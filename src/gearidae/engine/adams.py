@@ -46,7 +46,7 @@ def begin(a: Record, t: float, y: Floats, yp: Floats) -> None:
 
 
 @compiled(inline=True)
-def keep(a: Record, t: float, yp: Floats) -> None:
+def store_step(a: Record, t: float, yp: Floats) -> None:
     """Take note of a step up to t, if one has been accepted, and set `yp` to the rates there."""
     step = a.new_step
     if step == 0.0:
@@ -80,13 +80,13 @@ def _set_polynomials(a: Record, h: float, last: int) -> None:
     p0, p1, p2, p3, p4, value = _W0 * h, _W1 * h, _W2 * h, _W3 * h, _W4 * h, 1.0
     for i in range(last):
         a.basis_integrals[i], a.basis_values[i] = (p0 + p1) + (p2 + p3) + p4, value
-        lag = a.time_lags[i]
-        p0 *= x0 + lag
-        p1 *= x1 + lag
-        p2 *= x2 + lag
-        p3 *= x3 + lag
-        p4 *= x4 + lag
-        value *= h + lag
+        time_lag = a.time_lags[i]
+        p0 *= x0 + time_lag
+        p1 *= x1 + time_lag
+        p2 *= x2 + time_lag
+        p3 *= x3 + time_lag
+        p4 *= x4 + time_lag
+        value *= h + time_lag
     a.basis_integrals[last], a.basis_values[last] = (p0 + p1) + (p2 + p3) + p4, value
 
 
@@ -163,8 +163,8 @@ def order_error_sq(n: int, a: Record, h: float, order: int, weights: Floats) -> 
     Both polynomials go through the same last rates; they differ by the difference of order k, times
     :math:`\int (t - t_n) N_{k-1}\,dt`.
     """
-    lag = h + a.time_lags[order - 1]
-    factor = a.basis_integrals[order] - lag * a.basis_integrals[order - 1]
+    time_lag = h + a.time_lags[order - 1]
+    factor = a.basis_integrals[order] - time_lag * a.basis_integrals[order - 1]
     total = 0.0
     for j in range(n):
         weighed = a.new_differences[order, j] * weights[j]
@@ -174,7 +174,7 @@ def order_error_sq(n: int, a: Record, h: float, order: int, weights: Floats) -> 
 
 @compiled
 def between(a: Record, t: float, y: Floats, yp: Floats) -> None:
-    """State and rates at a time within the last step, of which `keep` has taken note."""
+    """State and rates at a time within the last step, of which `store_step` has taken note."""
     count = a.order_used + 1
     _set_polynomials(a, t - a.time, count - 1)
     changes, rates = _sums(a, a.basis_integrals, count), _sums(a, a.basis_values, count)

@@ -7,7 +7,15 @@ from collections.abc import Callable
 import numpy as np
 
 from gearidae.engine.elastic.histories import accumulate_points, init_nodes
-from gearidae.engine.elastic.rows import GAP, JOINED, SHARE, first_unknown, point_gaps, profile_of, row_of
+from gearidae.engine.elastic.node_rows import (
+    GAP,
+    GAP_SHARE,
+    JOINED,
+    first_unknown,
+    point_gaps,
+    profile_of,
+    row_of,
+)
 from gearidae.engine.events.sliding import settle_start
 from gearidae.engine.laws.statistical import set_all_branches, set_joined
 from gearidae.engine.model.state import EMPTY, MATERIALS, Floats, Model, assign
@@ -47,7 +55,7 @@ def change_over(old: Problem, new: Problem, checkpoint: Floats) -> Floats:
 
 def _handed_over(source: Model, state: Floats, new: Problem, time: float, y: Floats) -> Floats:
     """Checkpoint of the new problem: held friction is decided on anew, and the change of the stored energy booked."""
-    if new.model.scene.friction.rubs != 0:
+    if new.model.scene.friction.any_friction != 0:
         settle_start(new.model, time, y, False)
     for model in (source, new.model):
         follow_orbit(model, time)
@@ -118,9 +126,9 @@ def take_over(source: Model, m: Model) -> None:
     assign(m.state, source.state)
     m.state.bound_exceeded = 0
     m.state.history["pair"] = EMPTY
-    for coast, h in histories:
+    for flank, h in histories:
         if h.pair != EMPTY:
-            assign(m.state.history[coast * new_slots + (int(h.pair) & (new_slots - 1))], h)
+            assign(m.state.history[flank * new_slots + (int(h.pair) & (new_slots - 1))], h)
     set_all_branches(m)
     carry_exposures(source, m)
 
@@ -259,14 +267,14 @@ def _interpolate(source: Model, state: Floats, m: Model, y: Floats) -> None:
         for k in range(int(source.scene.histories))
     }
     for k in range(int(m.scene.histories)):
-        place = (k // int(m.scene.slots), int(m.state.history[k].pair))
-        old = before.get(place)
+        key = (k // int(m.scene.slots), int(m.state.history[k].pair))
+        old = before.get(key)
         if old is None:
             continue
         first, was = first_unknown(m, k), first_unknown(source, old)
         deflections = state[was : was + int(source.scene.nodes)]
         y[first : first + int(m.scene.nodes)] = _along(source, m, deflections, False)
-        row_of(m, k, SHARE)[:] = _along(source, m, row_of(source, old, SHARE), False)
+        row_of(m, k, GAP_SHARE)[:] = _along(source, m, row_of(source, old, GAP_SHARE), False)
         for material in range(MATERIALS):
             heights = row_of(source, old, JOINED + material) - profile_of(source, True)
             row_of(m, k, JOINED + material)[:] = _along(source, m, heights, True) + profile_of(m, True)

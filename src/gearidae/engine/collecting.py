@@ -10,7 +10,7 @@ from typing import IO, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.records.rows import Rows
+from gearidae.records.row_table import Rows
 
 logger = logging.getLogger(__name__)
 
@@ -38,8 +38,8 @@ class Collector:
         """Add a table as a driver writes it, shape (n, columns)."""
         if not len(table):
             return
-        for place, (name, column) in enumerate(self._kind.columns.items()):
-            part: NDArray[Any] = table[:, place].astype(column.dtype)
+        for index, (name, column) in enumerate(self._kind.columns.items()):
+            part: NDArray[Any] = table[:, index].astype(column.dtype)
             self._parts[name].append(part)
             self._held += part.nbytes
         if self._held > self._in_memory:

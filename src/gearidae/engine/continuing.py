@@ -88,7 +88,7 @@ def end_of(scene: Scene, words: Floats, began: float) -> Start:
     s = problem.model.state
     end = began + scene.run.duration
     time = end if s.time == problem.model.scene.end else float(s.time) * problem.time_unit
-    return Start(time, float(y[PHASE] + s.turns), scene, words, began)
+    return Start(time, float(y[PHASE] + s.whole_pitches), scene, words, began)
 
 
 def problem_from(scene: Scene, start: Start) -> Problem:
@@ -123,7 +123,7 @@ def checkpoint_of_start(scene: Scene, start: Start) -> Floats:
     if m.scene.guarded != 0:
         set_shaft_sides(m, y)
     if source.scene.follow.balance != m.scene.follow.balance:
-        _begin_balance(new.addresses.place, m, y)
+        _begin_balance(new.addresses.base, m, y)
     if source.scene.follow.passages != m.scene.follow.passages:
         m.state.passage[:] = np.zeros((), STATE["passage"])  # nothing is known of what has been before
     if source.scene.follow.impacts != m.scene.follow.impacts:
@@ -245,8 +245,8 @@ class _Units:
     def convert_motion(self, old: Floats, new: Floats) -> None:
         """Write the motion's states; deflections stay zero."""
         new[:MOTION] = old[:MOTION]
-        for place in (V, W):
-            new[place] = old[place] * self.speed
+        for index in (V, W):
+            new[index] = old[index] * self.speed
 
     def convert_exposures(self, m: Model) -> None:
         """Put what the flanks have been exposed to into the new units, in place; numbers of asperities have none."""
@@ -269,7 +269,7 @@ def _materials(m: Model) -> Floats:
     for record in m.scene.coverage:
         numbers += [
             record.teeth,
-            *m.tables[record.values_at : record.values_at + record.teeth * record.places],
+            *m.tables[record.values_at : record.values_at + record.teeth * record.positions],
         ]
     for record in m.scene.material:
         force = record.force_scale * m.scene.force_unit
@@ -337,20 +337,20 @@ def _begin_stretch(m: Model) -> None:
         s.segment[which] = int((ends <= time).sum())
 
 
-def _begin_balance(place: int, m: Model, y: Floats) -> None:
+def _begin_balance(address: int, m: Model, y: Floats) -> None:
     """Begin an energy balance that the other run has not kept, or leave out the one that it has."""
     assign(m.state.energy, np.zeros(1, STATE["energy"])[0])
-    for name in ("lag", "lag_power", "lag_rate"):
+    for name in ("adhesion_lag", "adhesion_lag_power", "adhesion_lag_power_rate"):
         m.state.history[name] = 0.0
     if m.scene.follow.balance:
-        open_balance(place, y)
+        open_balance(address, y)
 
 
 def _hold_or_slip(source: Model, m: Model, time: float, y: Floats) -> None:
     """Set the directions of slip where other elements resist than before, or what holds the gears no longer does."""
-    if m.scene.friction.on == 0:
+    if m.scene.friction.any_dry == 0:
         m.state.hold, m.state.slip = FREE, 1.0
-    elif m.scene.friction.rubs == source.scene.friction.rubs and (m.scene.dry != 0) == (
+    elif m.scene.friction.any_friction == source.scene.friction.any_friction and (m.scene.dry != 0) == (
         source.scene.dry != 0
     ):
         settle_start(m, time, y, False)

@@ -20,8 +20,8 @@ log = logging.getLogger(__name__)
 ADAMS, BDF = "adams", "bdf"
 """Formulas: those of Adams, with IDA's own where they are better; IDA's own, iteration and root search throughout."""
 
-TINY = 1e-3  # of the unit of time: how long a run is that is made to have everything compiled
-TINY_BLOCKS = 3
+COMPILING_TIME = 1e-3  # of the unit of time: how long a run is that is made to have everything compiled
+COMPILING_BLOCKS = 3
 """Blocks after which that run is left, though asperities by the million may make it a long one."""
 
 _solver_compiling = partial(compiling, SOLVER, HOW_LONG[SOLVER], FUNCTIONS[SOLVER])
@@ -93,7 +93,7 @@ def ready_driver(backend: str, problem: Problem) -> Callable[..., Iterator[Block
     kind = (backend, as_ida, bool(problem.model.scene.nodes > 0))
     if kind not in _ready:
         with compiling(f"the solver{' for elastic contacts' if kind[2] else ''}", "some seconds"):
-            for _ in islice(run(problem.shortened(TINY), 1e-3, 2, Statistics()), TINY_BLOCKS):
+            for _ in islice(run(problem.shortened(COMPILING_TIME), 1e-3, 2, Statistics()), COMPILING_BLOCKS):
                 pass
         _ready.add(kind)
     return run

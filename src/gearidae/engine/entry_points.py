@@ -19,48 +19,48 @@ from gearidae.engine.step import finish_step, residual_of_attempt
 
 
 @compiled
-def residual_at(place: int, t: float, y: Floats, yp: Floats, out: Floats) -> None:
+def residual_at(address: int, t: float, y: Floats, yp: Floats, out: Floats) -> None:
     """`gearidae.engine.step.residual_of_attempt`."""
-    residual_of_attempt(model_at(place), t, y, yp, out)
+    residual_of_attempt(model_at(address), t, y, yp, out)
 
 
 @compiled
-def jacobian_at(place: int, t: float, cj: float, y: Floats, out: Floats) -> None:
+def jacobian_at(address: int, t: float, cj: float, y: Floats, out: Floats) -> None:
     """`gearidae.engine.motion.residual.jacobian`."""
-    jacobian(model_at(place), t, cj, y, out)
+    jacobian(model_at(address), t, cj, y, out)
 
 
 @compiled
-def guard_at(place: int, t: float, y: Floats) -> float:
+def guard_at(address: int, t: float, y: Floats) -> float:
     """`gearidae.engine.events.events.guard`."""
-    return guard(model_at(place), t, y)
+    return guard(model_at(address), t, y)
 
 
 @compiled
-def note_step_start_at(place: int, t: float, y: Floats) -> None:
+def note_step_start_at(address: int, t: float, y: Floats) -> None:
     """`gearidae.engine.events.asperity_events.note_step_start`, with the guard asked there."""
-    m = model_at(place)
+    m = model_at(address)
     guard(m, t, y)
     note_step_start(m, y)
 
 
 @compiled
-def first_grazing_minimum_at(place: int, t: float, y: Floats, h: float) -> float:
+def first_grazing_minimum_at(address: int, t: float, y: Floats, h: float) -> float:
     """`gearidae.engine.events.asperity_events.first_grazing_minimum`, with the guard asked at the end of the step."""
-    m = model_at(place)
+    m = model_at(address)
     guard(m, t, y)
     return first_grazing_minimum(m, y, h)
 
 
 @compiled
-def observe_at(place: int, t: float, y: Floats, row: Floats) -> None:
+def observe_at(address: int, t: float, y: Floats, row: Floats) -> None:
     """`gearidae.engine.motion.observe.observe`."""
-    observe(model_at(place), t, y, row)
+    observe(model_at(address), t, y, row)
 
 
 @compiled
 def finish_step_at(
-    place: int,
+    address: int,
     t: float,
     y: Floats,
     yp: Floats,
@@ -69,10 +69,10 @@ def finish_step_at(
     out: Output,
 ) -> bool:
     """`gearidae.engine.step.finish_step`."""
-    return finish_step(model_at(place), t, y, yp, between, flag, out)
+    return finish_step(model_at(address), t, y, yp, between, flag, out)
 
 
 @compiled
-def rest_step_at(place: int, t: float, y: Floats) -> tuple[float, int]:
+def rest_step_at(address: int, t: float, y: Floats) -> tuple[float, int]:
     """`gearidae.engine.integrate.resting.rest_step`."""
-    return rest_step(model_at(place), t, y)
+    return rest_step(model_at(address), t, y)

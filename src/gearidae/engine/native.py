@@ -36,7 +36,7 @@ from gearidae.engine.observers.standing.judge import STICKS, STOP_STEPS
 from gearidae.engine.setup.problem import Problem
 from gearidae.engine.step import advance
 from gearidae.engine.sundials import names as sun
-from gearidae.engine.sundials.ida_memory import HANDLES, Places, close_solver, open_solver
+from gearidae.engine.sundials.ida_memory import HANDLES, FunctionOffsets, close_solver, open_solver
 from gearidae.records import Statistics
 
 FIRST_STEPS = 1_000
@@ -46,9 +46,9 @@ GROWTH_HIGH = 50
 
 
 @compiled
-def state_at_sample(place: int, arrays: Arrays, t: float) -> None:
+def state_at_sample(address: int, arrays: Arrays, t: float) -> None:
     """`state_for_sample`, for Python."""
-    m = model_at(place)
+    m = model_at(address)
     s = Stepper(arrays.handles, m, arrays.y, arrays.yp, arrays.dky, arrays.spare, arrays.clock)
     state_for_sample(s, t)
 
@@ -115,21 +115,21 @@ def run(
     s = make_arrays(problem, m, as_ida)
     if resume is not None:
         s.clock[0] = problem.restore(resume, s.y)
-    place = problem.addresses.place
+    address = problem.addresses.base
     unknowns = s.y.size
     if m.scene.nodes > 0 and not as_ida:
         unknowns = _weigh_motion(m)
     functions = callbacks(unknowns, bool(m.scene.nodes > 0), as_ida)
-    places = Places(sun.places(), sun.newton_places())
+    offsets = FunctionOffsets(sun.linear_solver_offsets(), sun.newton_offsets())
     with Output.lent(len(problem.columns)) as out:
         if total > 0 and m.state.progress.next_sample == 0:
             if reader is not None and reader.sample == 0:
                 reader.read(problem, float(s.clock[0]), lambda: s.y)
-            observe_at(place, float(s.clock[0]), s.y, out.rows[0])
+            observe_at(address, float(s.clock[0]), s.y, out.rows[0])
             m.work.driver.rows = m.state.progress.next_sample = 1
         try:
             vectors = (s.y, s.yp, s.dky)
-            if open_solver(s.handles, place, functions, places, vectors, CONVERGENCE_FAILURES_HIGH) != 0:
+            if open_solver(s.handles, address, functions, offsets, vectors, CONVERGENCE_FAILURES_HIGH) != 0:
                 statistics.ending = Ending.SOLVER_FAILURE
                 return
             yield from _blocks(problem, s, out, statistics, reader)
@@ -148,7 +148,7 @@ def _blocks(
     while driver.done == 0 and driver.error == 0 and not beyond:
         started = time.monotonic()
         room = out if reader is None else out.before(m, reader.sample)
-        advance(problem.addresses.place, s, room, budget)
+        advance(problem.addresses.base, s, room, budget)
         budget = _next_budget(budget, time.monotonic() - started)
         if m.scene.stop == STICKS:
             budget = min(budget, STOP_STEPS)
@@ -174,10 +174,10 @@ def _blocks(
 
 def _read(problem: Problem, s: Arrays, reader: SampleReader) -> None:
     """Have the model read at the sample that the step waits with."""
-    place, due = problem.addresses.place, float(sample_time(problem.model, reader.sample))
+    address, due = problem.addresses.base, float(sample_time(problem.model, reader.sample))
 
     def state() -> Floats:
-        state_at_sample(place, s, due)
+        state_at_sample(address, s, due)
         return s.dky
 
     reader.read(problem, due, state)

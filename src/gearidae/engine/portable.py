@@ -87,7 +87,7 @@ def run(
     ):  # the state there, whatever rounding has made of the sample's time
         if reader is not None and reader.sample == 0:
             reader.read(problem, float(driver.time), y.copy)
-        observe_at(solver.addresses.place, float(driver.time), y, out.rows[0])
+        observe_at(solver.addresses.base, float(driver.time), y, out.rows[0])
         driver.rows = progress.next_sample = 1
     solver.start(y)
     between = (np.zeros_like(y), np.zeros_like(y))
@@ -102,7 +102,7 @@ def run(
             problem.judge.follow(float(driver.time))
         if not has_room(driver.events, driver.passages, driver.impacts, out):
             yield out.block(m, driver.time)
-        afresh = finish_step_at(solver.addresses.place, float(driver.time), y, yp, between, flag, out)
+        afresh = finish_step_at(solver.addresses.base, float(driver.time), y, yp, between, flag, out)
         if driver.error in MODEL_CHANGES:
             progress.restarts += 1
         checkpoint = driver.since >= CHECKPOINT_STEPS
@@ -148,7 +148,7 @@ def _samples(
         state = y if due == driver.time else trail.at(due)
         if reader is not None and progress.next_sample == reader.sample:
             reader.read(problem, due, state.copy)
-        observe_at(solver.addresses.place, due, state, out.rows[driver.rows])
+        observe_at(solver.addresses.base, due, state, out.rows[driver.rows])
         progress.next_sample += 1
         driver.rows += 1
         if driver.rows == out.rows.shape[0]:
@@ -166,7 +166,7 @@ class _Solver:
         self._last: Any = None
         self._counted = (0, 0)  # of its evaluations, what the run's counters already have
         self.ending: Ending | None = None
-        self._look = math.inf  # time of a dip to stop at
+        self._dip_time = math.inf  # time of a dip to stop at
         self.trail = Trail(self._driver.time, y, y)
 
     def start(self, y: Floats) -> None:
@@ -174,7 +174,7 @@ class _Solver:
         m, t, yp = self.m, float(self._driver.time), np.zeros_like(y)
         prepare_start(m, t, y, yp)
         stop = next_stop(m)
-        self._stop, self._look = stop, math.inf
+        self._stop, self._dip_time = stop, math.inf
         self._last, self._counted = None, (0, 0)
         self.trail = Trail(t, y, yp)
         if self._driver.resting != 0:
@@ -186,26 +186,26 @@ class _Solver:
     def _note(self, y: Floats) -> None:
         """Note the asperities at a state from which the next step goes on."""
         if self.m.scene.population.flanks > 0:
-            note_step_start_at(self.addresses.place, float(self._driver.time), y)
+            note_step_start_at(self.addresses.base, float(self._driver.time), y)
 
     def _grazing_minimum(self, t: float, y: Floats) -> float:
         """Time in the step up to t at which an asperity dips below its guard and comes back; infinite if none does."""
         before = float(self._driver.time)
         if self.m.scene.population.flanks == 0 or t <= before:
             return math.inf
-        share = first_grazing_minimum_at(self.addresses.place, t, y, t - before)
+        share = first_grazing_minimum_at(self.addresses.base, t, y, t - before)
         return before + share * (t - before) if share > 0.0 else math.inf
 
-    def _look_at(self, grazing: float) -> None:
+    def _stop_at_dip(self, grazing: float) -> None:
         """Take the last step anew, and stop where an asperity dips: its root is then found."""
         t, y, yp = self.trail.last
         self.count()
         self._make(y.size, 0.25 * (grazing - t))
         self._ida.init_step(t, y, yp)
-        self._last, self._counted, self._look = None, (0, 0), grazing
+        self._last, self._counted, self._dip_time = None, (0, 0), grazing
 
     def _make(self, n: int, step: float) -> None:
-        m, place = self.m, self.addresses.place
+        m, address = self.m, self.addresses.base
         column_major = np.empty(n * n)
         # what scikit-sundae passes is read-only, which is another type to numba
         state, rates = np.empty(n), np.empty(n)
@@ -213,20 +213,20 @@ class _Solver:
 
         def resfn(t: float, y: Floats, yp: Floats, out: Floats) -> None:
             state[:], rates[:] = y, yp
-            residual_at(place, t, state, rates, out)
+            residual_at(address, t, state, rates, out)
 
         def jacfn(t: float, y: Floats, yp: Floats, res: Floats, cj: float, out: Floats) -> None:
             state[:] = y
             if blocks.size > 0:
                 dense_jacobian(m, t, cj, state, blocks, out)
                 return
-            jacobian_at(place, t, cj, state, column_major)
+            jacobian_at(address, t, cj, state, column_major)
             out[:] = column_major.reshape(n, n).T
 
         def falling(t: float, y: Floats, yp: Floats, out: Floats) -> None:
             self._guard_calls += 1
             state[:] = y
-            out[0] = guard_at(place, t, state)
+            out[0] = guard_at(address, t, state)
 
         vars(falling)["direction"] = [-1]
         self._history = vars(falling)  # scikit-sundae keeps the events there
@@ -248,11 +248,11 @@ class _Solver:
         driver = self._driver
         driver.since += 1
         if driver.resting != 0:
-            driver.time, flag = rest_step_at(self.addresses.place, float(driver.time), y)
+            driver.time, flag = rest_step_at(self.addresses.base, float(driver.time), y)
             self.trail.add(float(driver.time), y, np.zeros_like(y))
             return flag, y, np.zeros_like(y)
         try:
-            result = self._ida.step(self.m.scene.end, method="onestep", tstop=min(self._stop, self._look))
+            result = self._ida.step(self.m.scene.end, method="onestep", tstop=min(self._stop, self._dip_time))
         except KeyError as error:  # a status of SUNDIALS that scikit-sundae has no name for
             driver.error = min(int(error.args[0]), -1)
             return int(driver.error), y, y
@@ -262,15 +262,15 @@ class _Solver:
             driver.error = flag if flag < 0 else -1
             self.ending = None if flag < 0 else Ending.NOT_FINITE
             return flag, result.y, result.yp
-        grazing = self._grazing_minimum(result.t, result.y.copy()) if self._look == math.inf else math.inf
+        grazing = self._grazing_minimum(result.t, result.y.copy()) if self._dip_time == math.inf else math.inf
         if grazing < math.inf:
-            self._look_at(grazing)
+            self._stop_at_dip(grazing)
             return self.step(y)
-        if flag == STOP and result.t == self._look < self._stop:
-            flag, self._look = 0, math.inf
+        if flag == STOP and result.t == self._dip_time < self._stop:
+            flag, self._dip_time = 0, math.inf
         driver.time = result.t
-        if driver.time >= self._look:
-            self._look = math.inf
+        if driver.time >= self._dip_time:
+            self._dip_time = math.inf
         self._note(result.y.copy())
         self.m.state.progress.steps += flag != ROOT
         self.trail.add(result.t, result.y, result.yp)
@@ -279,7 +279,7 @@ class _Solver:
             for name in ("_i", "_t", "_y", "_yp"):
                 self._history[name].clear()
         if flag not in (STOP, ROOT):
-            unseen = guard_at(self.addresses.place, result.t, result.y.copy()) < 0.0
+            unseen = guard_at(self.addresses.base, result.t, result.y.copy()) < 0.0
             flag = ROOT if unseen else 0  # below zero for the whole step: IDA looks for changes of sign only
         return flag, result.y, result.yp
 

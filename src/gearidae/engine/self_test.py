@@ -222,21 +222,21 @@ def _error(scene: GearScene, problem: Problem, rows: NDArray[np.float64]) -> flo
     ratio = float(m.gear_radius / m.pinion_radius)
     amplitude = scene.drive.harmonic[0].amplitude
     swing = amplitude * scene.gears.pinion_base_radius / (scene.gears.pinion_inertia * omega**2)
-    turn = omega * np.linspace(0.0, scene.run.duration, SAMPLES)
+    angle = omega * np.linspace(0.0, scene.run.duration, SAMPLES)
     length, speed = float(m.length_unit), float(m.length_unit / m.time_unit)
     column = dict(zip(problem.columns, rows.T, strict=True))
     radius, steady = scene.gears.pinion_base_radius, scene.initial.gear_speed
-    slip = radius * (column["pinion_speed"] - ratio * steady) - swing * omega * np.sin(turn)
-    gap = column["drive_gap"] - scene.initial.gap + swing * (1.0 - np.cos(turn))
+    slip = radius * (column["pinion_speed"] - ratio * steady) - swing * omega * np.sin(angle)
+    gap = column["drive_gap"] - scene.initial.gap + swing * (1.0 - np.cos(angle))
     gear = (column["gear_speed"] - steady) * radius * ratio
     return float(max(abs(gap).max() / length, abs(slip).max() / speed, abs(gear).max() / speed))
 
 
 def _mark_error(scene: GearScene, events: NDArray[np.float64]) -> float:
     """Largest error of the times at which pairs enter the mesh, over the run's duration; infinite if one is missing."""
-    turn = 2.0 * math.pi / scene.gears.gear_teeth / scene.initial.gear_speed
+    period = 2.0 * math.pi / scene.gears.gear_teeth / scene.initial.gear_speed
     entries = events[(events[:, EVENT.kind] == EventKind.MESH_ENTRY) & (events[:, EVENT.flank] == 0)]
-    wanted = (np.arange(1, math.ceil(scene.run.duration / turn + 1.0)) - scene.initial.mesh_phase) * turn
+    wanted = (np.arange(1, math.ceil(scene.run.duration / period + 1.0)) - scene.initial.mesh_phase) * period
     wanted = wanted[wanted < scene.run.duration]
     if len(entries) != len(wanted) or list(entries[:, EVENT.pair]) != list(range(1, len(wanted) + 1)):
         return math.inf

@@ -95,9 +95,9 @@ from gearidae.engine.motion.observe import observe
 from gearidae.engine.motion.pair_forces import finish_deflections, is_eliminated, set_deflections
 from gearidae.engine.motion.residual import residual
 from gearidae.engine.observers import adhesion_loss, balance, friction_losses, impacts
-from gearidae.engine.observers.exposures import follow as exposures
+from gearidae.engine.observers.exposures import accumulation as exposures
 from gearidae.engine.observers.exposures.contacts import add_asperity_switches
-from gearidae.engine.observers.extremes import follow as extremes
+from gearidae.engine.observers.extremes import extrema as extremes
 from gearidae.engine.observers.finish import finish_account
 from gearidae.engine.observers.impacts import IMPACTS_AT_ONCE, write_impacts
 from gearidae.engine.observers.passages import PASSAGES_AT_ONCE, write_passages
@@ -110,7 +110,7 @@ from gearidae.engine.sundials.interpolation import solution_at
 MOST_CORRECTIONS: Final = 4
 SLOWEST: Final = 0.9  # a correction this large, over the last, is called divergence
 NOTHING: Final = 1e-9  # a correction this small, over the tolerance, needs no second
-SHARE: Final = 0.1  # of what IDA would leave
+NEWTON_TOLERANCE: Final = 0.1  # of what IDA would leave
 GROWTH: Final = 1.1  # of the estimate of what is left, per step
 LEAST: Final = 1e-4  # of that estimate
 FAILED: Final = 902  # what SUNDIALS answers with shorter steps
@@ -124,19 +124,19 @@ _CLOSE: Final = 16.0 * float(np.finfo(float).eps)
 
 
 @compiled
-def advance(place: int, arrays: Arrays, out: Output, budget: int) -> None:
+def advance(address: int, arrays: Arrays, out: Output, budget: int) -> None:
     """Run until a block of output is full, `budget` steps are done or the run is over.
 
     Parameters
     ----------
-    place : int
+    address : int
         Where the model lies, from `Addresses`; its ``work.driver`` says where the run stands.
     out : Output
         Samples and rows of this block.
     budget : int
         Steps to do at most.
     """
-    m = model_at(place)
+    m = model_at(address)
     s = Stepper(arrays.handles, m, arrays.y, arrays.yp, arrays.dky, arrays.spare, arrays.clock)
     driver = m.work.driver
     flag = driver.pending - 1
@@ -227,7 +227,7 @@ def propose(s: Stepper) -> int:
     )
     if flag < 0:
         return flag
-    adams.keep(s.m.work.adams, s.clock[0], s.yp)
+    adams.store_step(s.m.work.adams, s.clock[0], s.yp)
     if is_eliminated(s.m):
         finish_deflections(s.m, s.clock[0], s.y)
     if search.as_ida != 0:
@@ -343,7 +343,7 @@ def iterate(n: int, m: Model, attempt: Attempt) -> int:
             a.contraction_rate = max(norm / last, LEAST)
         # A tenth of the third of a tolerance that IDA would leave: it is no smooth function of time, and disturbs the
         # differences that choose step and order.
-        converged = a.contraction_rate * norm <= SHARE * attempt.tolerance
+        converged = a.contraction_rate * norm <= NEWTON_TOLERANCE * attempt.tolerance
         if norm <= NOTHING * attempt.tolerance or converged:
             for j in range(n):
                 a.new_state[j] = predicted[j] + correction[j]
@@ -512,7 +512,7 @@ def finish_step(
             if keeps_checkpoint(m):
                 driver.since = CHECKPOINT_STEPS
             events = pass_knot(m, t, out.events, events)
-            if m.scene.friction.on != 0:
+            if m.scene.friction.any_dry != 0:
                 events = follow_sliding(m, t, y, out.events, events)[0]
             afresh = True
         else:
@@ -623,7 +623,7 @@ def switch(
         if too_many:
             error = MANY_EVENTS
     # Friction decides behind the pairs and before the laws: limits follow from the loads of the new branches.
-    if m.scene.friction.on != 0:
+    if m.scene.friction.any_dry != 0:
         count, jumped = follow_sliding(m, t, y, events, count)
         restart |= jumped
     if m.scene.guarded != 0:
@@ -723,7 +723,7 @@ def prepare_restart(m: Model, t: float, y: Floats, yp: Floats) -> None:
 def account_event(m: Model, t: float, y: Floats, yp: Floats, event: PairEvent) -> None:
     """Take note of what has happened to a pair, before its history does."""
     if m.scene.follow.balance != 0 and event.turns:
-        adhesion_loss.event(m, y, event.coast, event.pair, event.k, event.gap)
+        adhesion_loss.event(m, y, event.flank, event.pair, event.k, event.gap)
     if m.scene.follow.exposures != 0:
         exposures.event(m, t, y, yp, event)
 

@@ -16,7 +16,7 @@ import numpy as np
 from gearidae.arrays import Floats
 from gearidae.contact.history import extreme_gap, joined_height
 from gearidae.engine.backend import follow
-from gearidae.engine.elastic.rows import JOINED, SHARE, first_unknown, row_of
+from gearidae.engine.elastic.node_rows import GAP_SHARE, JOINED, first_unknown, row_of
 from gearidae.engine.entry_points import observe_at
 from gearidae.engine.model.state import PHASE, Model, U, V, W, assign, copied
 from gearidae.engine.motion.pair_forces import force_of_one
@@ -106,12 +106,12 @@ class _Reader:
         # the rows of a population are many, and only read
         before = copied(m.state), copied(m.work), None if m.scene.population.flanks else m.rows.copy()
         y, row = state(), np.empty(len(problem.columns))
-        observe_at(problem.addresses.place, t, y, row)
+        observe_at(problem.addresses.base, t, y, row)
         seen = dict(zip(problem.columns, row.tolist(), strict=True))
         self.states.append(
             MeshState(
                 time=self._time(self._samples.popleft()),
-                travel=float(y[PHASE] + m.state.turns) * self._scene.geometry.base_pitch,
+                travel=float(y[PHASE] + m.state.whole_pitches) * self._scene.geometry.base_pitch,
                 transmission_error=seen["transmission_error"],
                 gear_speed=seen["gear_speed"],
                 mesh_force=seen["mesh_force"],
@@ -134,29 +134,29 @@ class _Reader:
         geometry, length = self._scene.geometry, float(m.scene.length_unit)
         reach = all_pairs(m, y)
         for i in range(reach.total):
-            coast, number = pair_at(reach, i)
-            along = float(m.scene.coast_phase + number - y[PHASE] if coast else y[PHASE] - number)
-            gap, rate = pair_gap(m, coast, number, y[U], y[V], y[PHASE], y[W])[:2]
+            flank, number = pair_at(reach, i)
+            along = float(m.scene.coast_phase + number - y[PHASE] if flank else y[PHASE] - number)
+            gap, rate = pair_gap(m, flank, number, y[U], y[V], y[PHASE], y[W])[:2]
             if not 0.0 <= along <= m.scene.contact_ratio and not in_reach(m, gap):
                 continue
             asperities: tuple[int, ...] | None = None
             joined: dict[str, float] = {}
             if self._scene.contact.is_discrete:
-                asperities, states = _joined_asperities(m, coast, number, y)
+                asperities, states = _joined_asperities(m, flank, number, y)
             else:
-                heights = _joined_heights(m, (coast, number), t, y, (gap, rate))
+                heights = _joined_heights(m, (flank, number), t, y, (gap, rate))
                 states = {MATERIAL_NAMES[n]: _state(m, n, gap, heights[n]) for n in self._materials}
                 joined = {MATERIAL_NAMES[n]: heights[n][1] * length for n in self._materials}
                 if m.scene.nodes > 0:
                     joined = dict.fromkeys(joined, np.nan)
-            place = along * geometry.base_pitch
+            position = along * geometry.base_pitch
             yield ToothContact(
-                pair=number + int(m.state.turns),
-                flank=Flank(coast),
-                place=place,
-                radius=float(curvature_radii(geometry, place)[2]),
+                pair=number + int(m.state.whole_pitches),
+                flank=Flank(flank),
+                place=position,
+                radius=float(curvature_radii(geometry, position)[2]),
                 gap=gap * length,
-                force=force_of_one(m, t, y, coast, number) * float(m.scene.force_unit),
+                force=force_of_one(m, t, y, flank, number) * float(m.scene.force_unit),
                 joined=joined,
                 states=states,
                 asperities=asperities,
@@ -174,7 +174,7 @@ def _joined_heights(
     middle = turning = float(gap + y[first_unknown(m, k)]) if elastic else gap
     if history.direction * rate < 0.0:
         back = extreme_gap(t - float(m.state.time), float(history.gap), float(history.gap_rate), gap, rate)
-        turning += (back - gap) * float(row_of(m, k, SHARE)[0] if elastic else 1.0)
+        turning += (back - gap) * float(row_of(m, k, GAP_SHARE)[0] if elastic else 1.0)
     heights = []
     for number, material in enumerate(m.scene.material):
         limit = float(material.stretch_limit)
@@ -196,14 +196,14 @@ def _state(m: Model, material: int, gap: float, height: tuple[float, float]) -> 
 
 
 def _joined_asperities(
-    m: Model, coast: int, number: int, y: Floats
+    m: Model, flank: int, number: int, y: Floats
 ) -> tuple[tuple[int, ...], dict[str, ContactState]]:
     """Joined asperities of a pair, by their numbers on its flank, and the states of their materials."""
-    k = history_of(m, coast, number)
+    k = history_of(m, flank, number)
     if m.state.history[k].pair != number:
         return (), {"bare": ContactState.OPEN}
-    columns, pair = joined_candidates(m, k), state_of_pair(m, coast, number, y)
-    at = spot_at(m, pair.place, pair.moves)
+    columns, pair = joined_candidates(m, k), state_of_pair(m, flank, number, y)
+    at = spot_at(m, pair.position, pair.moves)
     x = columns[ARC] - at.arc
     overlaps = columns[HEIGHT] - pair.gap - 0.5 * float(m.scene.population.steepness) / at.radius * x * x
     materials = m.tables[columns[KIND].astype(np.int64) + K_MATERIAL].astype(np.int64)
@@ -213,6 +213,6 @@ def _joined_asperities(
         states[MATERIAL_NAMES[material]] = (
             ContactState.PARTLY_STRETCHED if stretched else ContactState.LOADING
         )
-    first = m.tables[int(m.scene.population.starts_at) + flank_of(m, coast, number)]
+    first = m.tables[int(m.scene.population.starts_at) + flank_of(m, flank, number)]
     asperities = tuple((columns[INDEX] - first).astype(np.int64).tolist())
     return asperities, states or {"bare": ContactState.OPEN}

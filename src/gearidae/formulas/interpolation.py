@@ -55,6 +55,6 @@ def quintic(s: float, h: float, end0: tuple[float, float, float], end1: tuple[fl
 def vertex(t0: float, f0: float, t1: float, f1: float, t2: float, f2: float) -> tuple[float, float, float]:
     """Vertex of the parabola through three points: its argument and value, and half its second derivative."""
     first, second = (f1 - f0) / (t1 - t0), (f2 - f1) / (t2 - t1)
-    bend = (second - first) / (t2 - t0)
-    t = 0.5 * (t0 + t1 - first / bend)
-    return t, f0 + (t - t0) * (first + bend * (t - t1)), bend
+    curvature = (second - first) / (t2 - t0)
+    t = 0.5 * (t0 + t1 - first / curvature)
+    return t, f0 + (t - t0) * (first + curvature * (t - t1)), curvature

@@ -56,9 +56,9 @@ def _keeps_way(s: float, sign: float, h: float, f0: float, rate0: float, f1: flo
 
 @compiled
 def _stays(
-    s: float, place: float, most: float, h: float, f0: float, rate0: float, f1: float, rate1: float
+    s: float, centre: float, most: float, h: float, f0: float, rate0: float, f1: float, rate1: float
 ) -> bool:
-    return abs(cubic(s, h, f0, rate0, f1, rate1) - place) <= most
+    return abs(cubic(s, h, f0, rate0, f1, rate1) - centre) <= most
 
 
 zero_of_cubic = bisected(_keeps_sign)

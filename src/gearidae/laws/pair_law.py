@@ -15,29 +15,29 @@ class PairForce(NamedTuple):
 
     Attributes
     ----------
-    load, by_gap, by_rate, by_place : float
+    load, by_gap, by_rate, by_position : float
         Force along the line of action, which drives the flanks apart, and its slopes in the gap, in the gap's rate and
         along the path of contact. The last is left out where it only steers Newton's iteration a little.
     contact, contact_by_gap : float
         What asperities in contact carry of it, on which friction acts, and its slope in the gap.
-    path, path_by_gap, path_by_place : float
+    path, path_by_gap, path_by_position : float
         Force along the path of contact at fixed gap, per pitch, and its slopes.
-    limit, limit_by_gap, limit_by_place : float
+    limit, limit_by_gap, limit_by_position : float
         Largest friction, of a law that knows its contacts one by one, and its slopes.
     """
 
     load: float
     by_gap: float
     by_rate: float
-    by_place: float
+    by_position: float
     contact: float
     contact_by_gap: float
     path: float
     path_by_gap: float
-    path_by_place: float
+    path_by_position: float
     limit: float
     limit_by_gap: float
-    limit_by_place: float
+    limit_by_position: float
 
 
 NO_PAIR_FORCE: Final = PairForce(*(0.0,) * 12)
@@ -50,9 +50,9 @@ def of_contact(load: float, by_gap: float) -> PairForce:
 
 
 @compiled(inline=True)
-def of_path(path: float, by_gap: float, by_place: float) -> PairForce:
+def of_path(path: float, by_gap: float, by_position: float) -> PairForce:
     """Force along the path of contact alone."""
-    return PairForce(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, path, by_gap, by_place, 0.0, 0.0, 0.0)
+    return PairForce(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, path, by_gap, by_position, 0.0, 0.0, 0.0)
 
 
 @compiled(inline=True)
@@ -68,15 +68,15 @@ def both_forces(a: PairForce, b: PairForce) -> PairForce:
         a.load + b.load,
         a.by_gap + b.by_gap,
         a.by_rate + b.by_rate,
-        a.by_place + b.by_place,
+        a.by_position + b.by_position,
         a.contact + b.contact,
         a.contact_by_gap + b.contact_by_gap,
         a.path + b.path,
         a.path_by_gap + b.path_by_gap,
-        a.path_by_place + b.path_by_place,
+        a.path_by_position + b.path_by_position,
         a.limit + b.limit,
         a.limit_by_gap + b.limit_by_gap,
-        a.limit_by_place + b.limit_by_place,
+        a.limit_by_position + b.limit_by_position,
     )
 
 

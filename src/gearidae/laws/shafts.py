@@ -149,9 +149,9 @@ def driving_range(m: Model, shaft: int, t: float, to: float, angle: float) -> tu
 
 
 @compiled(inline=True)
-def book_losses(m: Model, shaft: int, h: float, angle: float, travel: float, turn: Ends) -> float:
+def book_losses(m: Model, shaft: int, h: float, angle: float, travel: float, speeds: Ends) -> float:
     """Book the losses of what acts on a shaft in a step of the length h, and return them."""
-    return _losses(m, shaft, h, angle, travel, turn, 0.0)
+    return _losses(m, shaft, h, angle, travel, speeds, 0.0)
 
 
 def has_law(scene: Any, shaft: int, law: ShaftLaw) -> bool:

@@ -7,7 +7,7 @@ from gearidae.mesh.involute import (
     curvature_radii,
     flank_arc,
     mesh_geometry,
-    place_of_arc,
+    position_of_arc,
     separation,
 )
 
@@ -18,6 +18,6 @@ __all__ = [
     "curvature_radii",
     "flank_arc",
     "mesh_geometry",
-    "place_of_arc",
+    "position_of_arc",
     "separation",
 ]

@@ -286,7 +286,7 @@ def _laid_out(
     ends = np.unique(ends[(ends >= 0.0) & (ends <= pitch)])
     half = 0.5 * np.diff(ends)[:, None]
     newest = (ends[:-1, None] + half * (1.0 + nodes)).ravel()
-    places = newest + behind[:, None]
-    pinion, gear, reduced = curvature_radii(geometry, places)
-    share = (places < length) * (1.0 if equal_shares else np.sqrt(reduced))
-    return half, share / share.sum(axis=0), places - geometry.approach, (pinion, gear)
+    positions = newest + behind[:, None]
+    pinion, gear, reduced = curvature_radii(geometry, positions)
+    share = (positions < length) * (1.0 if equal_shares else np.sqrt(reduced))
+    return half, share / share.sum(axis=0), positions - geometry.approach, (pinion, gear)

@@ -211,7 +211,7 @@ def flank_arc(geometry: Geometry, xi: ArrayLike) -> Floats:
     return np.asarray(curvature_radii(geometry, xi)[0] ** 2 / (2.0 * geometry.base_radius_pinion))
 
 
-def place_of_arc(geometry: Geometry, arc: ArrayLike) -> Floats:
+def position_of_arc(geometry: Geometry, arc: ArrayLike) -> Floats:
     """Position along the path of contact of a point on the pinion's flank: the inverse of `flank_arc`.
 
     Parameters

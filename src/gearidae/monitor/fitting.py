@@ -249,7 +249,7 @@ def _chi_square_of(
     kept = steps < sequences.shape[1]  # of a long record the first impacts are the ones that tell
     steps, x, variance = steps[kept], x[kept], variance[:, kept]
     furthest = sequences.shape[1] - 1 - int(steps[-1])
-    deviation = x - at_places(sequences, np.arange(furthest * _STEPS + 1) / _STEPS, steps)
+    deviation = x - sequences_from(sequences, np.arange(furthest * _STEPS + 1) / _STEPS, steps)
     if scatter is None:
         chi2 = _chi_square(deviation, 1.0 / variance[:, None, :], shift[:, None], rings.common)
     else:
@@ -291,13 +291,13 @@ def _chi_square_of_gears(deviation: Floats, covariance: Floats, shift: Floats) -
     return np.asarray(np.where(np.isnan(chi2), np.inf, chi2))
 
 
-def at_places(sequences: Floats, places: Floats, steps: np.ndarray) -> Floats:
+def sequences_from(sequences: Floats, starts: Floats, steps: np.ndarray) -> Floats:
     """Sequences that begin between the impacts, interpolated between the impacts.
 
     Parameters
     ----------
     sequences : ndarray, shape (n, k)
-    places : ndarray, shape (p,)
+    starts : ndarray, shape (p,)
         Where the record begins, in impacts.
     steps : ndarray of int, shape (m,)
         Impacts of the record, counted from its first.
@@ -306,7 +306,7 @@ def at_places(sequences: Floats, places: Floats, steps: np.ndarray) -> Floats:
     -------
     ndarray, shape (n, p, m)
     """
-    at = places[:, None] + steps[None, :]
+    at = starts[:, None] + steps[None, :]
     whole = np.minimum(at.astype(np.int64), sequences.shape[1] - 2)
     part = at - whole
     left, right = sequences[:, whole], sequences[:, whole + 1]

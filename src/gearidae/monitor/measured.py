@@ -39,7 +39,7 @@ _DELIMITERS = {
     " ": "",
 }
 _TWO = "must be two headings, that of the time and that of the speed"
-_STEP = Quantity(unit="s", above=0.0)
+_INTERVAL = Quantity(unit="s", above=0.0)
 _LARGEST = 2**30
 """Files larger than this [bytes] are refused: a record of a minute at 100 kHz has a tenth of it."""
 
@@ -108,7 +108,7 @@ def read_signal(
     table = {"skip": skip, "delimiter": delimiter, "decimal": decimal}
     name = signal if isinstance(signal, str | os.PathLike) else type(signal).__name__
     try:
-        step = None if interval is None else _STEP.take("interval", interval)
+        step = None if interval is None else _INTERVAL.take("interval", interval)
         wanted, most = _checked(columns, bridge, timed=step is None), int(bridge)
         is_text = isinstance(signal, str | os.PathLike) and not _is_netcdf(Path(signal))
         if step is None and "time" not in wanted and not is_text:

@@ -11,7 +11,7 @@ from gearidae.analysis.impacts import angle_of, windows_of
 from gearidae.analysis.ringing import HIGHEST, Ring, piece_of
 from gearidae.analysis.signal import FEWEST_SAMPLES, Signal
 from gearidae.arrays import Floats
-from gearidae.monitor.fitting import Fit, RingSet, at_places
+from gearidae.monitor.fitting import Fit, RingSet, sequences_from
 from gearidae.monitor.map_model import BEFORE, MapModel
 
 _SMOOTH = 0.02
@@ -317,8 +317,8 @@ def _image_of(model: MapModel, rings: RingSet, fit: Fit, rate: float, cutoff: fl
         kept &= rings.numbers + BEFORE < sequences.shape[1]
         predicted = sequences[:, None, BEFORE + rings.numbers[kept]]
     else:
-        places = np.arange((sequences.shape[1] - 1 - int(steps[kept][-1])) * _STEPS + 1) / _STEPS
-        predicted = at_places(sequences, places, steps[kept])
+        starts = np.arange((sequences.shape[1] - 1 - int(steps[kept][-1])) * _STEPS + 1) / _STEPS
+        predicted = sequences_from(sequences, starts, steps[kept])
     if not kept.any():
         return math.nan
     misfit = np.full(len(fractions), np.inf)

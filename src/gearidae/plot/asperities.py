@@ -79,9 +79,9 @@ def flank_asperities(scene: GearScene, pair: int, flank: Flank) -> MetFlank:
     return MetFlank(x, height, np.full_like(x, scene.surface.asperity_radius), material)
 
 
-def touching_arc(scene: GearScene, place: float) -> float:
+def touching_arc(scene: GearScene, position: float) -> float:
     """Return where a pair touches among the asperities to draw [m]: on a population's flank, or amid a sample."""
-    return contact_arc(scene, place) if scene.contact.is_discrete else 0.0
+    return contact_arc(scene, position) if scene.contact.is_discrete else 0.0
 
 
 def joined_asperities(scene: GearScene, contact: ToothContact) -> float:
@@ -174,9 +174,9 @@ def close_up(ax: Axes, scene: GearScene, contact: ToothContact) -> float:
     ax.plot(x * 1e6, np.where(materials[owner] > 0, lower, np.nan) * 1e9, color=COATING, linewidth=2.2)
     ax.plot(x * 1e6, np.where(pressed, upper, np.nan) * 1e9, color=POSITIVE, linewidth=3.5)
     shown = np.abs(row.x) < half
-    for place, height in zip(row.x[row.stretched & shown], row.height[row.stretched & shown], strict=True):
-        ends = [height * 1e9, (contact.gap + place**2 / (2.0 * radius)) * 1e9]
-        ax.plot([place * 1e6] * 2, ends, color=NEGATIVE, linewidth=3.0)
+    for position, height in zip(row.x[row.stretched & shown], row.height[row.stretched & shown], strict=True):
+        ends = [height * 1e9, (contact.gap + position**2 / (2.0 * radius)) * 1e9]
+        ax.plot([position * 1e6] * 2, ends, color=NEGATIVE, linewidth=3.0)
     if real:
         for joined, colour in ((row.pressed & shown, POSITIVE), (row.stretched & shown, NEGATIVE)):
             at = row.x[joined]

@@ -42,7 +42,7 @@ def coating_map(chart: xr.Dataset, ax: Axes | None = None, *, assessment: Assess
     chart = require_map(chart)
     ax = new_axes(ax, height=3.8)
     along = parameter_axis(chart["sam_fraction"])
-    percent = along.places
+    percent = along.positions
     further = [str(dim) for dim in chart["characteristic_frequency"].dims if dim != "sam_fraction"]
     lines = chart.stack(line=further) if further else chart.expand_dims("line")
     for number in range(lines.sizes["line"]):

@@ -16,7 +16,7 @@ from gearidae.arrays import Floats
 from gearidae.drawing.parameter_axis import parameter_axis
 from gearidae.drawing.style import NEGATIVE, POSITIVE, legend_columns, line_width, mark_value, new_axes, tidy
 from gearidae.errors import SceneError
-from gearidae.plot.outcome import look_of
+from gearidae.plot.outcome import style_of
 from gearidae.studies._sticking_probability import as_ensemble, drawn_keys
 from gearidae.studies._sticking_probability import sticking_probability as probability_of
 
@@ -57,11 +57,11 @@ def sticking_probability(
     along = parameter_axis(ds[name])
     at = estimate[name].values * along.factor
     ax = new_axes(ax, height=3.8)
-    look: dict[str, Any] = {"color": POSITIVE, "alpha": 0.25, "label": "95 % band"}
+    style: dict[str, Any] = {"color": POSITIVE, "alpha": 0.25, "label": "95 % band"}
     if len(at) > 1:
-        ax.fill_between(at, estimate["low"], estimate["high"], linewidth=0, **look)
+        ax.fill_between(at, estimate["low"], estimate["high"], linewidth=0, **style)
     else:  # a band would have no width
-        ax.vlines(at, estimate["low"], estimate["high"], linewidth=6, **look)
+        ax.vlines(at, estimate["low"], estimate["high"], linewidth=6, **style)
     ax.plot(
         at,
         estimate["probability"],
@@ -70,7 +70,7 @@ def sticking_probability(
         linewidth=line_width(1.4),
         label="members that stick",
     )
-    _mark_members(ax, along.places, ds["verdict"].values.tolist())
+    _mark_members(ax, along.positions, ds["verdict"].values.tolist())
     ax.set_ylim(-0.12, 1.12)
     ax.set_yticks(np.linspace(0.0, 1.0, 6))
     ax.set_xlabel(along.label)
@@ -88,16 +88,16 @@ def sticking_probability(
     return ax
 
 
-def _mark_members(ax: Axes, places: Floats, verdicts: Sequence[str]) -> None:
+def _mark_members(ax: Axes, positions: Floats, verdicts: Sequence[str]) -> None:
     """Mark what each member did, with a line of marks for those that stick and one for the others."""
     for verdict in dict.fromkeys(verdicts):
         chosen = np.array([other == verdict for other in verdicts])
-        look = look_of(verdict)
+        style = style_of(verdict)
         ax.plot(
-            places[chosen],
+            positions[chosen],
             np.full(chosen.sum(), 1.06 if verdict in STUCK else -0.06),
-            look.marker,
-            color=look.colour,
+            style.marker,
+            color=style.colour,
             markersize=5,
             alpha=0.7,
             label=f"{verdict} ({chosen.sum()})",

@@ -96,8 +96,8 @@ def largest_forces(scene: GearScene, states: list[MeshState]) -> tuple[Floats, F
         for contact in state.contacts:
             if contact.flank == Flank.DRIVE:
                 for side, tooth in zip(sides, met_teeth(np.array(contact.pair), coast=False), strict=True):
-                    place = int(tooth) % side.size
-                    side[place] = np.fmax(side[place], contact.force)
+                    index = int(tooth) % side.size
+                    side[index] = np.fmax(side[index], contact.force)
     return sides[0], sides[1]
 
 

@@ -21,7 +21,7 @@ from gearidae.drawing.style import (
     tidy,
     zero_line,
 )
-from gearidae.plot.outcome import look_of
+from gearidae.plot.outcome import style_of
 
 
 def gear_speed(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
@@ -146,13 +146,13 @@ def _mark_standstills(ax: Axes, run: Run) -> None:
         end = float(run.data["time"][-1]) if math.isnan(standstill["end"]) else standstill["end"]
         label = "_" if standstill["verdict"] in named else standstill["verdict"]
         named[standstill["verdict"]] = None
-        look = look_of(standstill["verdict"])
+        style = style_of(standstill["verdict"])
         ax.axvspan(
             standstill["begin"] * time.factor,
             end * time.factor,
-            facecolor=look.colour,
+            facecolor=style.colour,
             alpha=0.2,
-            hatch=look.hatch,
+            hatch=style.hatch,
             edgecolor="white",
             linewidth=0.0,
             label=label,

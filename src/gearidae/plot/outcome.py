@@ -85,7 +85,7 @@ def outcome(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     return ax
 
 
-def look_of(verdict: str) -> Look:
+def style_of(verdict: str) -> Look:
     """How a verdict looks."""
     return _LOOKS.get(verdict, _UNKNOWN)
 
@@ -96,30 +96,30 @@ def _bars(ax: Axes, along: ParameterAxis, judged: Sequence[GearOutcome | RollerO
     largest = float(np.nanmax(np.abs([*lows, *highs, 0.0])))
     scale = scale_for(largest, unit) if unit == "N" else scaled(largest, unit)
     lows, highs = lows * scale.factor, highs * scale.factor
-    ax.vlines(along.places, lows, highs, color="0.6", linewidth=line_width(1.6), zorder=2)
+    ax.vlines(along.positions, lows, highs, color="0.6", linewidth=line_width(1.6), zorder=2)
     for verdict in dict.fromkeys(result.verdict for result in judged):
         chosen = np.array([result.verdict == verdict for result in judged])
-        look = look_of(verdict)
+        style = style_of(verdict)
         ax.plot(
-            along.places[chosen],
+            along.positions[chosen],
             lows[chosen],
-            look.marker,
-            color=look.colour,
+            style.marker,
+            color=style.colour,
             markersize=6,
             label=verdict,
             zorder=3,
         )
-    order = np.argsort(along.places, kind="stable")
+    order = np.argsort(along.positions, kind="stable")
     for left, right in pairwise(order):
         if judged[left].verdict != judged[right].verdict:
-            middle = 0.5 * (along.places[left] + along.places[right])
+            middle = 0.5 * (along.positions[left] + along.positions[right])
             ax.axvline(middle, color="0.3", linestyle=":", linewidth=line_width(1.0), zorder=1)
     zero_line(ax)
     tidy(ax)
     ax.margins(x=0.03)
     ax.set_xlabel(along.label)
     if along.words:
-        ax.set_xticks(along.places, along.words)
+        ax.set_xticks(along.positions, along.words)
     ax.set_ylabel(f"{words} ({scale.unit})")
     _legend(ax, *ax.get_legend_handles_labels())
 
@@ -139,22 +139,22 @@ def _extents(
 
 def _fields(ax: Axes, down: ParameterAxis, across: ParameterAxis, verdicts: NDArray[np.object_]) -> None:
     """One field a run, from the middle between its values and their neighbours to the next: limits keep their shape."""
-    grid = verdicts.reshape(len(down.places), len(across.places))
-    rows, columns = np.argsort(down.places, kind="stable"), np.argsort(across.places, kind="stable")
+    grid = verdicts.reshape(len(down.positions), len(across.positions))
+    rows, columns = np.argsort(down.positions, kind="stable"), np.argsort(across.positions, kind="stable")
     grid = grid[np.ix_(rows, columns)]
     up, right = cell_edges(down), cell_edges(across)
     shown = list(dict.fromkeys(verdicts.tolist()))
     for verdict in shown:
-        look = look_of(verdict)
+        style = style_of(verdict)
         corners = [
             _corners(up[row : row + 2], right[column : column + 2])
             for row, column in np.argwhere(grid == verdict)
         ]
-        fields = PolyCollection(corners, facecolors=look.colour, edgecolors="white", linewidths=0.6)
-        fields.set_hatch(look.hatch)
+        fields = PolyCollection(corners, facecolors=style.colour, edgecolors="white", linewidths=0.6)
+        fields.set_hatch(style.hatch)
         ax.add_collection(fields, autolim=False)
     handles = [
-        Patch(facecolor=look_of(word).colour, hatch=look_of(word).hatch, edgecolor="white", linewidth=0.0)
+        Patch(facecolor=style_of(word).colour, hatch=style_of(word).hatch, edgecolor="white", linewidth=0.0)
         for word in shown
     ]
     scale_axis(ax, "x", across)

@@ -80,10 +80,10 @@ def _axis(ds: xr.Dataset, key: str, name: str) -> _Key:
     along = parameter_axis(values)
     factor = along.factor
     if "weight" in ds:
-        half = 0.5 * (along.places[1] - along.places[0])
-        edges = np.append(along.places - half, along.places[-1] + half)
+        half = 0.5 * (along.positions[1] - along.positions[0])
+        edges = np.append(along.positions - half, along.positions[-1] + half)
     else:
-        edges = np.linspace(along.places.min(), along.places.max(), _BINS + 1)
+        edges = np.linspace(along.positions.min(), along.positions.max(), _BINS + 1)
     summary = ds.sel(parameter=key)
     return _Key(edges, along.label, factor * float(summary["mean"]), factor * summary["quantiles"].values)
 
@@ -97,7 +97,7 @@ def _cells(ds: xr.Dataset, names: list[str], axes: list[_Key]) -> Callable[[list
         return np.asarray(ds["weight"].sum(others).transpose(*kept), dtype=np.float64)
 
     def of_draws(chosen: list[int]) -> Floats:
-        points = np.stack([parameter_axis(ds[names[number]]).places for number in chosen], axis=1)
+        points = np.stack([parameter_axis(ds[names[number]]).positions for number in chosen], axis=1)
         counts, _ = np.histogramdd(points, [axes[number].edges for number in chosen])
         return np.asarray(counts / len(points), dtype=np.float64)
 
@@ -109,12 +109,12 @@ def _draw_one(ax: Axes, key: _Key, shares: Floats) -> None:
     density = shares / np.diff(key.edges)
     ax.stairs(density, key.edges, color=POSITIVE, linewidth=1.4)
     levels = len(key.quantiles) // 2
-    for place in range(levels):
+    for index in range(levels):
         ax.axvspan(
-            key.quantiles[place],
-            key.quantiles[-1 - place],
+            key.quantiles[index],
+            key.quantiles[-1 - index],
             color=POSITIVE,
-            alpha=0.12 * (place + 1),
+            alpha=0.12 * (index + 1),
             linewidth=0,
         )
     ax.axvline(key.mean, color="0.3", linewidth=0.9)

@@ -352,8 +352,8 @@ def impact_spectrum(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     _note_aliases(ax, note)
     tidy(ax)
     if len(drawn) == 1:
-        place: dict[str, Any] = {"xytext": (3, 2), "textcoords": "offset points"}
-        ax.annotate(drawn[0].label, (highest, 1.0), **place, fontsize="small", color=drawn[0].colour)
+        options: dict[str, Any] = {"xytext": (3, 2), "textcoords": "offset points"}
+        ax.annotate(drawn[0].label, (highest, 1.0), **options, fontsize="small", color=drawn[0].colour)
     legend(ax, drawn)
     return ax
 
@@ -436,8 +436,8 @@ def _between(run: xr.Dataset, first: int, end: int) -> xr.Dataset:
     part = run.drop_vars(others).isel(time=slice(first, end))
     begin, stop = float(part["time"][0]), float(part["time"][-1])
     events = [
-        place + np.flatnonzero((times >= begin) & (times <= stop))
-        for place, times in pieces(run["event_time"])
+        options + np.flatnonzero((times >= begin) & (times <= stop))
+        for options, times in pieces(run["event_time"])
     ]
     return part.isel(event=np.concatenate([*events, np.empty(0, dtype=np.int64)])).load()
 
@@ -503,10 +503,16 @@ def _mark_sidebands(ax: Axes, mesh: float, turns: Mapping[str, int]) -> None:
             _mark(ax, mesh / teeth, name, down=_LINE * (2 + number))
     if not turns or wide:  # on a logarithmic axis they are beside the mesh as close as its own mark is wide
         return
-    turn = mesh / turns["pinion"]
+    pinion_frequency = mesh / turns["pinion"]
     for multiple in (-2, -1, 1, 2):
-        ax.axvline(mesh + multiple * turn, color="0.6", linewidth=line_width(0.7), linestyle=":", zorder=0)
-    _mark(ax, mesh + 2.0 * turn, "\N{PLUS-MINUS SIGN} 1, 2 pinion", down=_LINE, line=False)
+        ax.axvline(
+            mesh + multiple * pinion_frequency,
+            color="0.6",
+            linewidth=line_width(0.7),
+            linestyle=":",
+            zorder=0,
+        )
+    _mark(ax, mesh + 2.0 * pinion_frequency, "\N{PLUS-MINUS SIGN} 1, 2 pinion", down=_LINE, line=False)
 
 
 def _name_estimate(ax: Axes, resolution: float, wide: bool) -> None:

@@ -111,13 +111,13 @@ def pairs_at_most(scene: GearScene) -> int:
     return min(math.ceil((geometry.path_length + 2.0 * end) / geometry.base_pitch), 3)
 
 
-def nearest_pairs(state: MeshState, places: int) -> list[ToothContact]:
-    """Return the pairs of the flank that is nearest, at most one for each number modulo `places`."""
+def nearest_pairs(state: MeshState, count: int) -> list[ToothContact]:
+    """Return the pairs of the flank that is nearest, at most one for each number modulo `count`."""
     nearest = min(state.contacts, key=lambda contact: contact.gap).flank
     taken: dict[int, ToothContact] = {}
     for contact in sorted(state.contacts, key=lambda contact: contact.gap):
         if contact.flank == nearest:
-            taken.setdefault(contact.pair % places, contact)
+            taken.setdefault(contact.pair % count, contact)
     return sorted(taken.values(), key=lambda contact: contact.pair)
 
 
@@ -150,12 +150,13 @@ class TeethView:
         self._largest = max(
             (abs(contact.force) for state in states for contact in state.contacts), default=0.0
         )
-        self._places = pairs_at_most(self._scene)
+        self._pair_count = pairs_at_most(self._scene)
         self.figure = figure or new_picture((7.6, 7.2), panels=True)
         self._mesh = self.figure.add_axes((0.015, 0.525, 0.97, 0.43))
-        width = 0.985 / self._places
+        width = 0.985 / self._pair_count
         self._close = [
-            self.figure.add_axes((0.085 + k * width, 0.245, width - 0.1, 0.145)) for k in range(self._places)
+            self.figure.add_axes((0.085 + k * width, 0.245, width - 0.1, 0.145))
+            for k in range(self._pair_count)
         ]
         self._time_factor, self._cursor = speed_strip(
             self.figure.add_axes((0.085, 0.055, 0.9, 0.08)), ds, "gear"
@@ -164,16 +165,16 @@ class TeethView:
 
     def draw(self, state: MeshState) -> None:
         """Draw a state in place of the one before."""
-        shown = nearest_pairs(state, self._places)
+        shown = nearest_pairs(state, self._pair_count)
         _draw_mesh(self._mesh, self._picture, state, shown, self._largest)
-        for place, ax in enumerate(self._close):
+        for number, ax in enumerate(self._close):
             ax.clear()
-            here = [contact for contact in shown if contact.pair % self._places == place]
+            here = [contact for contact in shown if contact.pair % self._pair_count == number]
             ax.set_visible(bool(here))
             for contact in here:
                 factor = close_up(ax, self._scene, contact)
                 joined = joined_asperities(self._scene, contact)
-                _caption(ax, contact, factor, joined, narrow=self._places > 2)
+                _caption(ax, contact, factor, joined, narrow=self._pair_count > 2)
         self._cursor.set_xdata([state.time * self._time_factor] * 2)
         self._mesh.set_title(_headline(state), loc="left", fontsize="medium")
 
@@ -228,7 +229,7 @@ def _draw_mesh(
         ax.fill(*outline.T, facecolor=colour, edgecolor="0.25", linewidth=0.7)
     for flank in (Flank.DRIVE, Flank.COAST):
         ends = (
-            np.stack([picture.line(flank, place) for place in (0.0, picture.geometry.path_length)]) / module
+            np.stack([picture.line(flank, number) for number in (0.0, picture.geometry.path_length)]) / module
         )
         used = shown[0].flank == flank
         ax.plot(

@@ -92,11 +92,11 @@ class ToothedWheel:
         outline: Floats = np.concatenate([body, rim]) + np.array([0.0, self.centre])
         return outline
 
-    def _teeth_at(self, turned: float, places: Iterable[int], passed: int) -> Floats:
+    def _teeth_at(self, turned: float, numbers: Iterable[int], passed: int) -> Floats:
         """Outlines of teeth one after another, clockwise as the points of a tooth, after so many have passed."""
         pitch = 2.0 * math.pi / self.teeth
         outlines = []
-        for k in places:
+        for k in numbers:
             # teeth that follow lag behind, in the wheel's own sense
             error = float(self.errors[(passed + self.turning * k) % self.teeth])
             # the pinion's drive flank leads and the gear's trails: both stand back clockwise
@@ -143,9 +143,9 @@ class GearPicture:
         pinion = (beyond + ahead) / self.geometry.base_radius_pinion
         return pinion, beyond / self.geometry.base_radius_gear
 
-    def line(self, flank: Flank, place: float) -> Floats:
+    def line(self, flank: Flank, position: float) -> Floats:
         """Point of a flank's line of action, by its position along the path of contact [m]."""
-        beyond, angle = place - self.geometry.approach, self.geometry.pressure_angle
+        beyond, angle = position - self.geometry.approach, self.geometry.pressure_angle
         across = math.cos(angle) if flank == Flank.DRIVE else -math.cos(angle)
         return np.array([beyond * across, -beyond * math.sin(angle)])
 
@@ -231,12 +231,12 @@ def gear_picture(
     )
 
 
-def contact_points(picture: GearPicture, flank: Flank, place: float, gap: float) -> tuple[Floats, Floats]:
+def contact_points(picture: GearPicture, flank: Flank, position: float, gap: float) -> tuple[Floats, Floats]:
     """Where a pair's two flanks cross the line of action.
 
     Parameters
     ----------
-    place : float
+    position : float
         Position xi along the path of contact [m].
     gap : float
         Gap of the pair [m].
@@ -246,7 +246,7 @@ def contact_points(picture: GearPicture, flank: Flank, place: float, gap: float)
     pinion, gear : ndarray, shape (2,)
         Points [m], a gap apart. Relief of rounded ends is left to the pinion's.
     """
-    return picture.line(flank, place - picture.gaps * gap), picture.line(flank, place)
+    return picture.line(flank, position - picture.gaps * gap), picture.line(flank, position)
 
 
 def _wheel(

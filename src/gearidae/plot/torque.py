@@ -83,11 +83,11 @@ def _strips(ax: Axes, runs: list[Run], low: float, high: float, scale: Scale) ->
     time = label_time(ax, runs)
     step = 1.12 * (high - low) or 1.0
     cut = False
-    for place, run in enumerate(runs):
+    for row, run in enumerate(runs):
         at, torque = run.trace(_TORQUE)
         clipped = np.clip(torque, low, high)
         cut = cut or not np.array_equal(clipped, torque, equal_nan=True)
-        zero = -place * step
+        zero = -row * step
         ax.axhline(zero * scale.factor, color="0.6", linewidth=line_width(0.6), zorder=1)
         for part, colour in ((np.maximum(clipped, 0.0), POSITIVE), (np.minimum(clipped, 0.0), NEGATIVE)):
             if part.any():
@@ -102,7 +102,7 @@ def _strips(ax: Axes, runs: list[Run], low: float, high: float, scale: Scale) ->
     tidy(ax)
     bottom = low - (len(runs) - 1) * step
     ax.set_ylim((bottom - 0.1 * step) * scale.factor, (high + 0.1 * step) * scale.factor)
-    ax.set_yticks([-place * step * scale.factor for place in range(len(runs))], [run.label for run in runs])
+    ax.set_yticks([-row * step * scale.factor for row in range(len(runs))], [run.label for run in runs])
     ax.tick_params(axis="y", length=0)
     ax.grid(visible=False, axis="y")
     ax.spines["left"].set_visible(False)

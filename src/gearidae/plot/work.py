@@ -36,12 +36,12 @@ def work(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     shares = work_shares(ds)
     ax = new_axes(ax, height=1.2 + 0.3 * len(shares))
     colours = {"mesh": 1, "hub": 2, "drags": 3}
-    for place, (name, energy, share) in enumerate(shares):
+    for row, (name, energy, share) in enumerate(shares):
         colour = line_colour(colours.get(name.split()[0], 0))
-        ax.barh(place, 100.0 * share, color=colour, height=0.6)
+        ax.barh(row, 100.0 * share, color=colour, height=0.6)
         ax.annotate(
             f" {100.0 * share:.3g} %, {with_prefix(energy, 'J', 3)}",
-            (100.0 * max(share, 0.0), place),
+            (100.0 * max(share, 0.0), row),
             va="center",
             fontsize="small",
         )

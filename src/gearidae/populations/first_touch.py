@@ -48,7 +48,7 @@ def first_touch(scene: GearScene) -> float:
             reach[number] = law_of(scene.contact.asperity, largest).join * sigma - surface.gap_offset
         joins = np.array([reach[number] for number in material.tolist()])
         x = flank.arc - float(flank_arc(geometry, xi))
-        bend = x**2 / (2.0 * float(curvature_radii(geometry, xi)[2]))
+        drop = x**2 / (2.0 * float(curvature_radii(geometry, xi)[2]))
         relief = float(separation(geometry, xi, scene.mesh.tip_relief_radius)[0])
-        widest = max(widest, float((flank.height + joins - bend).max()) - relief)
+        widest = max(widest, float((flank.height + joins - drop).max()) - relief)
     return widest + _BEYOND * sigma

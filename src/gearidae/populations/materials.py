@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.mesh.involute import place_of_arc
+from gearidae.mesh.involute import position_of_arc
 from gearidae.populations.flanks import FlankAsperities
 from gearidae.scene import MATERIAL_NAMES, Scene
 from gearidae.scene.coating_table import fraction_at
@@ -23,7 +23,7 @@ def along_path(scene: Scene, flank: FlankAsperities) -> NDArray[np.float64]:
     if scene.gears is None:
         return np.zeros_like(flank.arc)
     geometry = scene.geometry
-    return np.clip(place_of_arc(geometry, flank.arc) / geometry.path_length, 0.0, 1.0)
+    return np.clip(position_of_arc(geometry, flank.arc) / geometry.path_length, 0.0, 1.0)
 
 
 def covered_sides(scene: Scene, flank: FlankAsperities, gear_tooth: int) -> tuple[Bools, Bools]:
@@ -39,12 +39,12 @@ def covered_sides(scene: Scene, flank: FlankAsperities, gear_tooth: int) -> tupl
     pinion, gear : ndarray of bool, shape (n,)
         Which asperities lie on a covered part of each flank; alike for patches, which cover both sides.
     """
-    places = along_path(scene, flank)
+    positions = along_path(scene, flank)
     pinion, gear = scene.coating.tables
-    first = flank.q < fraction_at(pinion, flank.tooth, places)
+    first = flank.q < fraction_at(pinion, flank.tooth, positions)
     if scene.coating.pairing == "patches":
         return first, first
-    return first, flank.q2 < fraction_at(gear, gear_tooth, places)
+    return first, flank.q2 < fraction_at(gear, gear_tooth, positions)
 
 
 def by_gear_tooth(scene: Scene) -> bool:

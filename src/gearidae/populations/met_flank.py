@@ -42,10 +42,10 @@ class MetFlank(NamedTuple):
         """Return some of them, by their numbers or by a mask."""
         return MetFlank(self.arc[which], self.height[which], self.radius[which], self.material[which])
 
-    def overlaps(self, scene: GearScene, place: float, gap: float) -> Floats:
+    def overlaps(self, scene: GearScene, position: float, gap: float) -> Floats:
         """Overlap of each with the gear's flank [m], where the pair touches at a position on its path, at a gap [m]."""
-        x = self.arc - contact_arc(scene, place)
-        return np.asarray(self.height - gap - x**2 / (2.0 * _radius(scene, place)))
+        x = self.arc - contact_arc(scene, position)
+        return np.asarray(self.height - gap - x**2 / (2.0 * _radius(scene, position)))
 
 
 def met_flank(scene: GearScene, pair: int, flank: Flank) -> MetFlank:
@@ -66,11 +66,11 @@ def met_flank(scene: GearScene, pair: int, flank: Flank) -> MetFlank:
     return MetFlank(asperities.arc, asperities.height - recesses[material], asperities.radius, material)
 
 
-def contact_arc(scene: GearScene, place: float) -> float:
+def contact_arc(scene: GearScene, position: float) -> float:
     """Arc on the pinion's flank at which a pair touches [m]: outside its path at its end."""
-    return float(flank_arc(scene.geometry, min(max(place, 0.0), scene.geometry.path_length)))
+    return float(flank_arc(scene.geometry, min(max(position, 0.0), scene.geometry.path_length)))
 
 
-def _radius(scene: GearScene, place: float) -> float:
+def _radius(scene: GearScene, position: float) -> float:
     """Reduced radius of curvature where a pair touches [m]."""
-    return float(curvature_radii(scene.geometry, place)[2])
+    return float(curvature_radii(scene.geometry, position)[2])

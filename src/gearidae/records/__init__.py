@@ -51,7 +51,7 @@ from gearidae.records.results import (
     Solution,
     Words,
 )
-from gearidae.records.rows import RowColumn, Rows
+from gearidae.records.row_table import RowColumn, Rows
 from gearidae.records.sampling import (
     first_sample,
     sample_times,

@@ -10,7 +10,7 @@ from typing import Final, NamedTuple
 
 from gearidae.laws.law import SHAFT_NAMES
 from gearidae.laws.shafts import SAMPLED
-from gearidae.records.rows import places
+from gearidae.records.row_table import indices_of
 
 
 class Column(NamedTuple):
@@ -151,10 +151,10 @@ PIN_FRICTION_COLUMNS = tuple(column.name for column in PIN_FRICTION_SAMPLES)
 shafts follow them."""
 
 
-GEAR: Final = places(*GEAR_COLUMNS, *ELASTIC_COLUMNS)
-ROLLER: Final = places(*ROLLER_COLUMNS, *ELASTIC_COLUMNS)
-GEAR_POPULATION: Final = places(*GEAR_COLUMNS, *POPULATION_COLUMNS)
-ROLLER_POPULATION: Final = places(*ROLLER_COLUMNS, *POPULATION_COLUMNS)
+GEAR: Final = indices_of(*GEAR_COLUMNS, *ELASTIC_COLUMNS)
+ROLLER: Final = indices_of(*ROLLER_COLUMNS, *ELASTIC_COLUMNS)
+GEAR_POPULATION: Final = indices_of(*GEAR_COLUMNS, *POPULATION_COLUMNS)
+ROLLER_POPULATION: Final = indices_of(*ROLLER_COLUMNS, *POPULATION_COLUMNS)
 """Indices of the columns in a row of samples: ``row[GEAR.gear_speed]``."""
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from gearidae.laws.law import on_shaft
 from gearidae.laws.shafts import SHAFT_LAWS
-from gearidae.records.rows import FLAG, RowColumn, Rows, places
+from gearidae.records.row_table import FLAG, RowColumn, Rows, indices_of
 
 
 @unique
@@ -82,5 +82,5 @@ class Events(Rows):
     }
 
 
-EVENT: Final = places(*Events.columns)
+EVENT: Final = indices_of(*Events.columns)
 """Indices of the columns in an event's row: ``row[EVENT.kind]``."""

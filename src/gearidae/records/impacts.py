@@ -8,7 +8,7 @@ from typing import ClassVar, Final
 import numpy as np
 
 from gearidae.records.quantity import ENERGY, FORCE, INT, SPEED, TIME, Quantity, Unit, count
-from gearidae.records.rows import FLAG, RowColumn, Rows, places
+from gearidae.records.row_table import FLAG, RowColumn, Rows, indices_of
 
 WHICH: Final = (
     Quantity("time", "time of the separation, which ends the impact", TIME),
@@ -67,5 +67,5 @@ class Impacts(Rows):
     }
 
 
-IMPACT: Final = places(*Impacts.columns)
+IMPACT: Final = indices_of(*Impacts.columns)
 """Indices of the columns in an impact's row: ``row[IMPACT.impulse]``."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from gearidae.records.energy import ENERGY_NOW, ENERGY_SUMS
 from gearidae.records.quantity import FORCE, INT, TIME, Quantity, count
-from gearidae.records.rows import FLAG, RowColumn, Rows, places
+from gearidae.records.row_table import FLAG, RowColumn, Rows, indices_of
 
 _force = partial(Quantity, unit=FORCE, comment="since the mesh exit before on the same flank, or the start")
 
@@ -57,5 +57,5 @@ class Passages(Rows):
     }
 
 
-PASSAGE: Final = places(*Passages.columns)
+PASSAGE: Final = indices_of(*Passages.columns)
 """Indices of the columns in a passage's row: ``row[PASSAGE.impacts]``."""

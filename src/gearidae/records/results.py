@@ -13,7 +13,7 @@ from gearidae.records.events import Events
 from gearidae.records.extremes import Extremes
 from gearidae.records.impacts import Impacts
 from gearidae.records.passages import Passages
-from gearidae.records.rows import Rows
+from gearidae.records.row_table import Rows
 from gearidae.records.statistics import Statistics
 
 Words = NDArray[Any]

@@ -100,7 +100,7 @@ NOTICED = 0.1
 """Pitches that free gears must have moved for a standstill of any duration, and for one that sticks."""
 SWING = 2.0 * NOTICED
 """Pitches by which free gears may be ahead of a gear that turns round; 0.14 where it rings before it follows them."""
-SHARE = 0.01
+SHORT_STANDSTILL = 0.01
 """Of the time since the start: a standstill in which free gears have moved less lasts longer than this."""
 SETTLED_WITHIN = 1.0
 """Pitches that free gears may go from a zero and settle."""
@@ -124,7 +124,7 @@ def stands(advance: float, free_advance: float, lasts: float, until: float, toge
         Whether free gears have settled, and the gear has gone no farther in the second half of the time either.
     """
     held = free_advance == 0.0 or advance < 0.5 * free_advance or together
-    return held and (free_advance >= NOTICED or lasts > SHARE * until)
+    return held and (free_advance >= NOTICED or lasts > SHORT_STANDSTILL * until)
 
 
 class Followed(NamedTuple):
@@ -182,4 +182,4 @@ def is_driven(free_advance: float, driven_time: float, until: float, settled: in
     settled : int
         Whether free gears have settled: the drive then goes on to turn nothing.
     """
-    return not settled and (free_advance >= NOTICED or driven_time > SHARE * until)
+    return not settled and (free_advance >= NOTICED or driven_time > SHORT_STANDSTILL * until)

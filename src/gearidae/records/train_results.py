@@ -239,7 +239,7 @@ def solution_of(
     shafts: Sequence[str],
     meshes: Sequence[str],
     time: NDArray[np.float64],
-    look_time: NDArray[np.float64],
+    distances_time: NDArray[np.float64],
     tables: Sequence[NDArray[np.float64]],
     totals: TrainTotals,
     *,
@@ -257,7 +257,7 @@ def solution_of(
     ----------
     shafts, meshes : sequence of str
         Names.
-    time, look_time : ndarray
+    time, distances_time : ndarray
         Times of the samples and of the looks [s], of which the run may have reached the first ones alone.
     tables : sequence of ndarrays
         `TABLES`, as in a `TrainBlock`.
@@ -274,7 +274,7 @@ def solution_of(
         meshes=tuple(meshes),
         time=time[: len(samples)],
         samples=_columns(samples, *sizes),
-        track=Track(look_time[: len(looks)], _columns(looks, *sizes), *zeros.T.copy()),
+        track=Track(distances_time[: len(looks)], _columns(looks, *sizes), *zeros.T.copy()),
         events={
             name: events[:, i].astype(np.int64) if name in _WHOLE else events[:, i].copy()
             for name, i in at.items()

@@ -202,7 +202,7 @@ def _frames(scene: GearScene, run: xr.Dataset, every: int) -> Floats:
 
 def _picked(values: xr.DataArray, every: int, count: int) -> Floats:
     """One of so many of the first values, read piece by piece."""
-    parts = [part[-place % every :: every] for place, part in pieces(values, 0, count)]
+    parts = [part[-first % every :: every] for first, part in pieces(values, 0, count)]
     return np.concatenate([np.empty(0), *parts])
 
 

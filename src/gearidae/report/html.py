@@ -52,14 +52,14 @@ def table(
         Columns to set to the right.
     """
     heads = "".join(
-        f'<th scope="col"{_class("number" if place in numeric else "")}>{text(name)}</th>'
-        for place, name in enumerate(headings)
+        f'<th scope="col"{_class("number" if column in numeric else "")}>{text(name)}</th>'
+        for column, name in enumerate(headings)
     )
     lines = []
     for row in rows:
         cells = "".join(
-            f"<td{_class('number' if place in numeric else '')}>{text(cell)}</td>"
-            for place, cell in enumerate(row)
+            f"<td{_class('number' if column in numeric else '')}>{text(cell)}</td>"
+            for column, cell in enumerate(row)
         )
         lines.append(f"<tr>{cells}</tr>")
     title = f"<caption>{text(caption)}</caption>" if caption else ""

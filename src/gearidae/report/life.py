@@ -31,7 +31,7 @@ def life_table(ds: xr.Dataset) -> str:
             rings = float(state["characteristic_frequency"])
             row.append("-" if math.isnan(rings) else with_prefix(rings, "Hz", 4))
         rows.append(row)
-    numeric = [place for place in range(len(headings)) if place != 1 + len(sides)]
+    numeric = [column for column in range(len(headings)) if column != 1 + len(sides)]
     return html.table(headings, rows, caption="Steps of the life", numeric=numeric) + law_table(ds)
 
 

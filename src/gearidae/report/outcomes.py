@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from gearidae.analysis.verdict import outcomes
 from gearidae.archive.select import swept_dims
 from gearidae.archive.value_text import value_text
-from gearidae.plot.outcome import look_of
+from gearidae.plot.outcome import style_of
 
 _SIGNS = {"o": "●", "X": "✕", "D": "◆", "^": "▲", "v": "▼", "<": "◀", "s": "■", "P": "✚"}
 """The marks of matplotlib as characters."""
@@ -26,7 +26,7 @@ def ascending(ds: xr.Dataset) -> xr.Dataset:
 def numbers_ascending(ds: xr.Dataset) -> list[int]:
     """Number that each run of `ascending` has among the runs of the dataset; the last dimension changes fastest."""
     order = _order(ds)
-    sizes = [len(places) for places in order.values()]
+    sizes = [len(positions) for positions in order.values()]
     numbers = np.arange(math.prod(sizes)).reshape(sizes)
     return [int(number) for number in np.ravel(numbers[np.ix_(*order.values())])]
 
@@ -53,17 +53,17 @@ def pack_outcomes(ds: xr.Dataset) -> dict[str, Any]:
     -------
     dict
         ``dims``: for each dimension its ``name`` and the ``values`` in words, with those of keys that were walked
-        together; ``looks``: ``word``, ``colour`` and ``sign`` of each verdict; ``verdicts``: which of them each run
+        together; ``styles``: ``word``, ``colour`` and ``sign`` of each verdict; ``verdicts``: which of them each run
         has, the last dimension fastest; ``words``: what each run did.
     """
     judged = outcomes(ds)
     verdicts = list(dict.fromkeys(outcome.verdict for outcome in judged))
-    looks = [look_of(verdict) for verdict in verdicts]
+    styles = [style_of(verdict) for verdict in verdicts]
     return {
         "dims": [{"name": dim.replace("_", " "), "values": _values(ds, dim)} for dim in swept_dims(ds)],
         "looks": [
-            {"word": verdict, "colour": look.colour, "sign": _SIGNS[look.marker]}
-            for verdict, look in zip(verdicts, looks, strict=True)
+            {"word": verdict, "colour": style.colour, "sign": _SIGNS[style.marker]}
+            for verdict, style in zip(verdicts, styles, strict=True)
         ],
         "verdicts": [verdicts.index(outcome.verdict) for outcome in judged],
         "words": [outcome.words for outcome in judged],

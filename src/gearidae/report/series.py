@@ -130,12 +130,12 @@ def _times(run: xr.Dataset, kind: EventKind, most: int) -> NDArray[np.float64]:
     total = count(run["event_kind"], kind)
     wanted = np.linspace(0, total - 1, min(total, most)).astype(int)
     parts, passed = [np.empty(0)], 0
-    for place, kinds in pieces(run["event_kind"]):
-        places = place + np.flatnonzero(kinds == kind)
-        here = wanted[(wanted >= passed) & (wanted < passed + places.size)] - passed
+    for offset, kinds in pieces(run["event_kind"]):
+        indices = offset + np.flatnonzero(kinds == kind)
+        here = wanted[(wanted >= passed) & (wanted < passed + indices.size)] - passed
         if here.size:
-            first = int(places[here[0]])
-            times = run["event_time"].variable[first : int(places[here[-1]]) + 1].values
-            parts.append(times[places[here] - first])
-        passed += places.size
+            first = int(indices[here[0]])
+            times = run["event_time"].variable[first : int(indices[here[-1]]) + 1].values
+            parts.append(times[indices[here] - first])
+        passed += indices.size
     return np.concatenate(parts)

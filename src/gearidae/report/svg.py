@@ -94,7 +94,7 @@ def colour_rules(drawings: Iterable[str]) -> str:
 
 def _on_dark(colour: str) -> str:
     """Turn a colour for a light ground into one for a dark ground: greys between ink and ground change sides."""
-    red, green, blue = (int(colour[place : place + 2], 16) for place in (1, 3, 5))
+    red, green, blue = (int(colour[start : start + 2], 16) for start in (1, 3, 5))
     if not red == green == blue:
         return _ON_DARK.get(colour, colour)
     share = red / 255

@@ -55,7 +55,7 @@ def outcome_table(ds: xr.Dataset) -> str:
     dims = swept_dims(ds)
     names = (*dims, *headings(judged[0]))
     rows = [[*label_cells(ds, outcome.label), *cells(outcome, rtol)] for outcome in judged]
-    numeric = [place for place in range(len(names)) if place != len(dims)]
+    numeric = [offset for offset in range(len(names)) if offset != len(dims)]
     return html.table(names, rows, caption="Outcome of each run", numeric=numeric)
 
 
@@ -154,12 +154,12 @@ class _EventCounts:
 
 def _count_events(run: xr.Dataset) -> _EventCounts:
     counted = _EventCounts(dict.fromkeys(EventKind, 0))
-    for place, kinds in pieces(run["event_kind"]):
+    for offset, kinds in pieces(run["event_kind"]):
         for kind in EventKind:
             counted.counts[kind] += int(np.count_nonzero(kinds == kind))
         made = kinds == EventKind.ONSET
         if made.any():
-            cut = slice(place, place + len(kinds))
+            cut = slice(offset, offset + len(kinds))
             counted.first = min(counted.first, float(run["event_time"].variable[cut].values[made].min()))
             counted.fastest = max(
                 counted.fastest, float(-run["event_gap_rate"].variable[cut].values[made].min())

@@ -122,12 +122,12 @@ def _pack_run(run: xr.Dataset, most: int) -> dict[str, Any]:
     # samples themselves and not times between, so that what is shown is what was recorded
     every = max(1, math.ceil((samples - 1) / (most - 1)))
     times = float(run["time"][samples - 1]) / max(samples - 1, 1) * np.arange(0, samples, every)
-    places = pairs_at_most(scene)
+    count = pairs_at_most(scene)
     asperities = _Asperities(scene)
-    rows = [_row(asperities, state, places) for state in mesh_states(run, times)]
+    rows = [_row(asperities, state, count) for state in mesh_states(run, times)]
     return {
         "every": every,
-        "places": places,
+        "places": count,
         **pack_gears(scene, gaps=enlarged(scene), most_play=MOST_PLAY),
         "roughness": scene.surface.roughness,
         "halfWidth": half_width(scene),
@@ -177,16 +177,16 @@ class _Asperities:
         return np.stack([drawn.arc, drawn.height], axis=1), row
 
 
-def _row(asperities: _Asperities, state: MeshState, places: int) -> list[float]:
+def _row(asperities: _Asperities, state: MeshState, count: int) -> list[float]:
     """Return the numbers of a state; each of its pairs in columns of its own."""
     geometry = asperities.scene.geometry
     # as many pitches as bring both gears back to where they were: float32 keeps the position of millions of pitches
     turns = math.lcm(geometry.pinion_teeth, geometry.gear_teeth)
     travel = state.travel / geometry.base_pitch % turns
     row = [state.time, travel, state.transmission_error, state.gear_speed, state.mesh_force]
-    pairs = {contact.pair % places: contact for contact in nearest_pairs(state, places)}
-    for place in range(places):
-        row += _pair(asperities, pairs[place]) if place in pairs else [math.nan] * len(PAIR)
+    pairs = {contact.pair % count: contact for contact in nearest_pairs(state, count)}
+    for number in range(count):
+        row += _pair(asperities, pairs[number]) if number in pairs else [math.nan] * len(PAIR)
     return row
 
 

@@ -61,17 +61,17 @@ class Batch:
         backend: str,
         report: SweepProgress,
         kept: RunCache | None,
-        keep: OutputSelection,
+        selection: OutputSelection,
     ) -> None:
         self._plan = plan
         self._scenes = plan.scenes
         self._backend = backend
         self._report = report
         self._kept = kept
-        self._keep = keep
+        self._selection = selection
         # samples go to where the dataset has them as soon as they are there: they are in memory once
         self._of_trains = is_long_train(plan.base)
-        columns = () if self._of_trains else keep.columns(plan.base)
+        columns = () if self._of_trains else selection.columns(plan.base)
         self._samples = SampleTable(columns, len(plan.scenes), plan.base.run.sample_count)
         self._done: dict[int, RunResult] = {}
         self._under_way: dict[int, float] = {}  # share that is done of the runs that have begun
@@ -118,8 +118,10 @@ class Batch:
         stacked: Callable[..., xr.Dataset] = (
             stack_trains if self._of_trains else partial(stack, samples=self._samples)
         )
-        ds = stacked(self._plan.base, self._plan.axes, self._plan.scenes, solutions, keep=self._keep)
-        if self._keep.names is None:
+        ds = stacked(
+            self._plan.base, self._plan.axes, self._plan.scenes, solutions, selection=self._selection
+        )
+        if self._selection.names is None:
             return ds
         dims = ds["status"].dims
         for name, variable in VERDICT.items():
@@ -170,7 +172,7 @@ class Batch:
         try:
             if in_process:
                 return executor.submit(self._solve_here, *numbers)
-            return executor.submit(solve_group, scenes, self._backend, self._keep)
+            return executor.submit(solve_group, scenes, self._backend, self._selection)
         except BrokenExecutor as error:  # a process of it has died: none of its runs will be finished
             future: Future[list[RunResult]] = Future()
             future.set_exception(error)
@@ -186,7 +188,7 @@ class Batch:
             raise
         except Exception as error:
             if len(numbers) == 1:
-                return [(numbers[0], crashed(self._scenes[numbers[0]], error, self._keep))]
+                return [(numbers[0], crashed(self._scenes[numbers[0]], error, self._selection))]
             for number in numbers:
                 submit([number])
             return []
@@ -204,7 +206,7 @@ class Batch:
                 self._under_way[number] = time / duration
             self._tell()
 
-        return [solve_and_leave(self._scenes[number], self._backend, self._keep, on_progress)]
+        return [solve_and_leave(self._scenes[number], self._backend, self._selection, on_progress)]
 
     def _outcome_here(self, number: int) -> RunResult:
         """Run a scene; one that dies (of memory that ran out) must not take the others along."""
@@ -213,7 +215,7 @@ class Batch:
         except SceneError:
             raise
         except Exception as error:
-            return crashed(self._scenes[number], error, self._keep)
+            return crashed(self._scenes[number], error, self._selection)
 
     def _finish(self, number: int, left: RunResult) -> None:
         if left.solution.status == "interrupted":
@@ -231,7 +233,7 @@ class Batch:
         if number not in self._done:
             if self._kept is not None and left.solution.status == "finished":
                 judged = {name: getattr(left, name) for name in VERDICT}
-                self._kept.keep(self._scenes[number], left.solution, judged)
+                self._kept.store(self._scenes[number], left.solution, judged)
             self._store(number, left)
 
     def _store(self, number: int, left: RunResult) -> None:

@@ -56,7 +56,7 @@ _DEEPEST, _WIDEST = -30.0, GAP_HIGH - 0.1
 """Gaps between which a balance is sought, in roughnesses."""
 _AFTER = 0.1
 """Where a pair rings: so far, in pitches, beyond where the pair before it left the mesh."""
-_STEP = 1e-4
+_GAP_STEP = 1e-4
 """Change of the gap over which a stiffness is taken, in roughnesses."""
 _GAP_ERROR = 1e-7
 """Of the gaps found, in roughnesses; forces change by e^6 in one."""
@@ -118,13 +118,13 @@ def contact_resonance(scene: Scene, joined: float | None = None) -> float:
     geometry, gears = scene.geometry, scene.gears
     pinion, gear = geometry.base_radius_pinion, geometry.base_radius_gear
     law, force = pair_law(scene), torque / pinion
-    place = geometry.path_length - (1.0 - _AFTER) * geometry.base_pitch
-    radius = float(curvature_radii(geometry, place)[2])
+    position = geometry.path_length - (1.0 - _AFTER) * geometry.base_pitch
+    radius = float(curvature_radii(geometry, position)[2])
     gap = settled_gap(scene, lambda at: law(at, at, radius) - force)
     if joined is not None:
         gap = nearest_gap(scene, lambda at: law(at, joined, radius) - force, min(gap, joined))
     pressed = gap if joined is None else min(gap, joined)
-    step = _STEP * scene.surface.roughness
+    step = _GAP_STEP * scene.surface.roughness
     here = law(gap, pressed, radius)
     # a pair that swings stays on the branch on which nothing joins or detaches: the stiffer way of the two
     opening = here - law(gap + step, pressed, radius)

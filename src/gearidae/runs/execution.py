@@ -346,5 +346,5 @@ def solutions(
             continue
         solution, word = next(fresh)
         if kept is not None and solution.status == "finished":
-            kept.keep(scene, solution, {"verdict": word})
+            kept.store(scene, solution, {"verdict": word})
         yield solution, word

@@ -63,7 +63,7 @@ class LeavingPair:
 
     Attributes
     ----------
-    places : ndarray
+    positions : ndarray
         Distances from the end of the path on [m], between which the largest resistance is looked for.
     """
 
@@ -72,7 +72,7 @@ class LeavingPair:
         self._leaving, self._staying = leaving_radii(scene)
         law_of_one = law_of_tip(scene.contact.asperity, asperity_of(scene.surface), 1.0)  # in metres
         reach = _REACH * scene.surface.roughness + law_of_one.detach
-        self.places = np.linspace(0.0, math.sqrt(2.0 * self._rho * reach), _STEPS + 1)
+        self.positions = np.linspace(0.0, math.sqrt(2.0 * self._rho * reach), _STEPS + 1)
 
     def settled(self, force: float) -> float:
         """Gap of all pairs at the end of the path [m], pressed by a force alone [N]."""
@@ -123,9 +123,9 @@ def exits(scene: GearScene, force: float, impacts: int) -> list[Exit]:
             return pair.balanced(beyond, -near[0], joined, force)
 
         followed = [(-gap, 0.0)]
-        for beyond in pair.places[1:]:
+        for beyond in pair.positions[1:]:
             followed.append(at(float(beyond), followed[-1]))
-        deepest, most = (largest(at, pair.places, followed, which)[which] for which in (0, 1))
+        deepest, most = (largest(at, pair.positions, followed, which)[which] for which in (0, 1))
         joined, gap = min(joined, -deepest), -followed[-1][0]
         followed_exits.append(Exit(most, joined))
     return followed_exits
@@ -133,7 +133,7 @@ def exits(scene: GearScene, force: float, impacts: int) -> list[Exit]:
 
 def largest(
     at: Callable[[float, Sequence[float]], Sequence[float]],
-    places: Floats,
+    positions: Floats,
     known: Sequence[Sequence[float]],
     which: int,
 ) -> Sequence[float]:
@@ -158,7 +158,7 @@ def largest(
     """
     k = max(range(len(known)), key=lambda n: known[n][which])
     before = max(k - 1, 0)
-    low, high = float(places[before]), float(places[min(k + 1, len(places) - 1)])
+    low, high = float(positions[before]), float(positions[min(k + 1, len(positions) - 1)])
     near, part, error = known[before], 0.5 * (math.sqrt(5.0) - 1.0), _PLACE_ERROR * (high - low)
     inner, outer = high - part * (high - low), low + part * (high - low)
     at_inner, at_outer = at(inner, near), at(outer, near)

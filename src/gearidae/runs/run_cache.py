@@ -78,7 +78,7 @@ class RunCache:
         Any scene of the sweep.
     backend : str
         The driver that runs, ``native`` or ``sksundae``.
-    keep : OutputSelection, optional
+    store : OutputSelection, optional
         What each run leaves behind; by default everything.
 
     Raises
@@ -87,12 +87,14 @@ class RunCache:
         If runs of version 0.3.0 are kept there, which it alone can read.
     """
 
-    def __init__(self, archive: Path, scene: Scene, backend: str, keep: OutputSelection = EVERYTHING) -> None:
+    def __init__(
+        self, archive: Path, scene: Scene, backend: str, selection: OutputSelection = EVERYTHING
+    ) -> None:
         self.path = journal_of(archive)
         self._circumstances = {
             "layout": _LAYOUT,
             **circumstances(scene, backend),
-            **({} if keep.names is None else {"keep": keep.asked}),
+            **({} if selection.names is None else {"keep": selection.asked}),
         }
         self._warned = False
         self._journal: Journal | None = None
@@ -110,7 +112,7 @@ class RunCache:
         """Hash of a scene and of all else that its result depends on."""
         return name_of(scene, self._circumstances)
 
-    def keep(
+    def store(
         self, scene: Scene, solution: AnySolution, judged: Mapping[str, str | int] | None = None
     ) -> None:
         """Write a finished run, or what it leaves behind and how it was judged, a value for each of `VERDICT`.

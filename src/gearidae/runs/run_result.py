@@ -34,7 +34,10 @@ class RunResult:
 
 
 def solve_and_leave(
-    scene: Scene, backend: str, keep: OutputSelection, on_progress: Callable[[float, int], None] | None = None
+    scene: Scene,
+    backend: str,
+    selection: OutputSelection,
+    on_progress: Callable[[float, int], None] | None = None,
 ) -> RunResult:
     """Run a scene, judge it, and drop what is not kept, where it was run.
 
@@ -45,22 +48,22 @@ def solve_and_leave(
     on_progress : callable, optional
         As for `gearidae.runs.running.solve`.
     """
-    return leave(scene, solve_any(scene, backend, on_progress), keep)
+    return leave(scene, solve_any(scene, backend, on_progress), selection)
 
 
-def leave(scene: Scene, solution: AnySolution, keep: OutputSelection) -> RunResult:
+def leave(scene: Scene, solution: AnySolution, selection: OutputSelection) -> RunResult:
     """Judge a run and drop what is not kept of it."""
-    if keep.names is None:
+    if selection.names is None:
         return RunResult(solution)
-    return RunResult(keep.thinned(solution), *verdict_of(scene, solution))
+    return RunResult(selection.thinned(solution), *verdict_of(scene, solution))
 
 
-def crashed(scene: Scene, error: Exception, keep: OutputSelection) -> RunResult:
+def crashed(scene: Scene, error: Exception, selection: OutputSelection) -> RunResult:
     """Return what is left of a run that died, such as of memory that ran out."""
-    return leave(scene, nothing_of(scene, "crashed", f"{type(error).__name__}: {error}"), keep)
+    return leave(scene, nothing_of(scene, "crashed", f"{type(error).__name__}: {error}"), selection)
 
 
-def solve_group(scenes: Sequence[Scene], backend: str, keep: OutputSelection) -> list[RunResult]:
+def solve_group(scenes: Sequence[Scene], backend: str, selection: OutputSelection) -> list[RunResult]:
     """Run scenes one after the other; one that dies is no end of the others.
 
     Parameters
@@ -76,11 +79,11 @@ def solve_group(scenes: Sequence[Scene], backend: str, keep: OutputSelection) ->
     results: list[RunResult] = []
     for scene in scenes:
         try:
-            results.append(solve_and_leave(scene, backend, keep))
+            results.append(solve_and_leave(scene, backend, selection))
         except SceneError:
             raise
         except Exception as error:
-            results.append(crashed(scene, error, keep))
+            results.append(crashed(scene, error, selection))
         if results[-1].solution.status == "interrupted":
             break
     return results

@@ -176,7 +176,7 @@ def solve_any(
 def watched(report: RunReport, on_block: engine.OnBlock | None) -> engine.OnBlock:
     """Return what looks at every block of a run, says to its report whether the gear stands, and calls `on_block`."""
 
-    def look(block: Block) -> object:
+    def report_block(block: Block) -> object:
         if block.extremes is not None and not math.isnan(since := block.extremes.stick_time):
             held = Holding(block.extremes.holding).words
             report.doing = f"{f'held by {held}' if held else 'standing'} since {with_prefix(since, 's')}"
@@ -184,7 +184,7 @@ def watched(report: RunReport, on_block: engine.OnBlock | None) -> engine.OnBloc
             report.doing = ""
         return None if on_block is None else on_block(block)
 
-    return look
+    return report_block
 
 
 def solve_to_end(scene: Scene, backend: str, start: engine.Start | None = None) -> Solution:

@@ -120,7 +120,7 @@ def sweep(
         executor, jobs, backend, progress, archive, overwrite, resume, base.run.method, compress
     )
     plan = plan_sweep(base, over, zipped=zipped)
-    return run_study(plan, execution, {}, keep=parts)
+    return run_study(plan, execution, {}, selection=parts)
 
 
 def run_study(
@@ -129,7 +129,7 @@ def run_study(
     about: Mapping[str, str],
     finish: Callable[[xr.Dataset], xr.Dataset] = lambda ds: ds,
     *,
-    keep: OutputSelection | None = None,
+    selection: OutputSelection | None = None,
 ) -> xr.Dataset:
     """Compute the runs of a plan, and make the dataset of a sweep or a study of them.
 
@@ -139,7 +139,7 @@ def run_study(
         What the result depends on besides the runs, as attributes.
     finish : callable, optional
         Makes the study's dataset of that of the runs.
-    keep : OutputSelection, optional
+    selection : OutputSelection, optional
         What each run leaves behind; by default its verdict and its extremes.
 
     Returns
@@ -154,22 +154,22 @@ def run_study(
     Interrupted
         On Ctrl-C, with the runs so far as its ``dataset``; `archive` holds the same and can be resumed.
     """
-    keep = read_keep(("extremes",), plan.base) if keep is None else keep
+    selection = read_keep(("extremes",), plan.base) if selection is None else selection
     refuse_unlike(plan)
-    asked = "" if keep.names is None else json.dumps(keep.asked)
+    asked = "" if selection.names is None else json.dumps(selection.asked)
     expected = {
         **origin_of(plan.base), "swept": plan.swept, "zipped": plan.zipped, "keep": asked, **about,
     }  # fmt: skip
 
     def work(kept: RunCache | None) -> xr.Dataset:
         try:
-            return finish(run_plan(plan, execution, kept, keep))
+            return finish(run_plan(plan, execution, kept, selection))
         except Interrupted as interrupt:
             raise Interrupted("", finish(interrupt.dataset)) from None
 
     return run_kept(
         execution,
-        lambda target: RunCache(target, plan.base, execution.driver, keep),
+        lambda target: RunCache(target, plan.base, execution.driver, selection),
         work,
         expected,
         scenes=plan.scenes,
@@ -178,7 +178,7 @@ def run_study(
 
 
 def run_plan(
-    plan: SweepPlan, execution: Execution, kept: RunCache | None, keep: OutputSelection = EVERYTHING
+    plan: SweepPlan, execution: Execution, kept: RunCache | None, selection: OutputSelection = EVERYTHING
 ) -> xr.Dataset:
     """Compute the runs of a sweep.
 
@@ -186,7 +186,7 @@ def run_plan(
     ----------
     kept : RunCache, optional
         Where finished runs are taken from, and kept.
-    keep : OutputSelection, optional
+    selection : OutputSelection, optional
         What each run leaves behind.
 
     Raises
@@ -195,7 +195,7 @@ def run_plan(
         On Ctrl-C, with the runs that are finished; the others are marked.
     """
     with sweep_progress(execution.progress, len(plan.scenes), lambda: execution.words(plan.scenes)) as report:
-        batch = Batch(plan, execution.backend, report, kept, keep)
+        batch = Batch(plan, execution.backend, report, kept, selection)
         try:
             if kept is not None and kept.count():
                 batch.take_kept(kept)

@@ -116,7 +116,7 @@ class TrainRelease:
             speed, pitch = self._speed(k), mesh.geometry.base_pitch
             # the exit of the next pair that leaves
             first = (mesh.geometry.path_length / pitch - mesh.phase) % 1.0
-            width = float(self._pairs[k].places[-1]) / speed
+            width = float(self._pairs[k].positions[-1]) / speed
             for number in range(min(math.ceil(turns * paces[k]), _MOST_EXITS)):
                 begin = (first + number) * pitch / speed
                 yield _Window(k, min(number, self._impacts - 1), begin, begin + width)
@@ -154,29 +154,33 @@ class TrainRelease:
         self, torque: float, group: Sequence[_Window], joined: Sequence[Floats], begin: list[float]
     ) -> Sequence[float]:
         """Follow exits that overlap; the gaps to which contacts are pressed go into `joined`, by mesh and exit."""
-        places = np.unique(
-            np.concatenate([w.begin + self._pairs[w.mesh].places / self._speed(w.mesh) for w in group])
+        positions = np.unique(
+            np.concatenate([w.begin + self._pairs[w.mesh].positions / self._speed(w.mesh) for w in group])
         )
 
-        def at(place: float, near: Sequence[float]) -> list[float]:
-            return self._look(torque, place, near, group, joined)
+        def at(position: float, near: Sequence[float]) -> list[float]:
+            return self._largest_torques(torque, position, near, group, joined)
 
         followed, ending = [begin], sorted(group, key=lambda window: window.end)
-        for number, place in enumerate(places[1:], 1):
-            followed.append(at(float(place), followed[-1]))
-            while ending and ending[0].end <= place:
+        for number, position in enumerate(positions[1:], 1):
+            followed.append(at(float(position), followed[-1]))
+            while ending and ending[0].end <= position:
                 window = ending.pop(0)
-                k, exit_number, first = window.mesh, window.number, int(np.searchsorted(places, window.begin))
+                k, exit_number, first = (
+                    window.mesh,
+                    window.number,
+                    int(np.searchsorted(positions, window.begin)),
+                )
                 if exit_number < self._impacts - 1:
                     inside = slice(first, number + 1)
-                    deepest = largest(at, places[inside], followed[inside], 1 + k)[1 + k]
+                    deepest = largest(at, positions[inside], followed[inside], 1 + k)[1 + k]
                     joined[k][exit_number + 1 :] = min(joined[k][exit_number], -deepest)
-        return largest(at, places, followed, 0)
+        return largest(at, positions, followed, 0)
 
-    def _look(
+    def _largest_torques(
         self,
         torque: float,
-        place: float,
+        position: float,
         near: Sequence[float],
         group: Sequence[_Window],
         joined: Sequence[Floats],
@@ -186,11 +190,11 @@ class TrainRelease:
         depths, held = list(near[1 : 1 + count]), np.array(near[1 + count :])
 
         def hold(k: int, force: float) -> float:
-            there = next((w for w in group if w.mesh == k and w.begin <= place <= w.end), None)
+            there = next((w for w in group if w.mesh == k and w.begin <= position <= w.end), None)
             if there is None:
                 return 0.0
             pair = self._pairs[k]
-            beyond = min((place - there.begin) * self._speed(k), float(pair.places[-1]))
+            beyond = min((position - there.begin) * self._speed(k), float(pair.positions[-1]))
             depths[k], resistance = pair.balanced(beyond, -depths[k], joined[k][there.number], force)
             return resistance
 

@@ -179,9 +179,9 @@ class _Mesh:
         contact, geometry = pair_contact(scene.pair(mesh.name)), mesh.geometry
         self.half, self.sigma = 0.5 * mesh.mesh.backlash, mesh.surface.roughness
         first = mesh.phase - math.floor(mesh.phase) - 1.0
-        places = np.arange(first, geometry.contact_ratio + 1.0) * geometry.base_pitch
-        radii = curvature_radii(geometry, places)[2]
-        relief = separation(geometry, places, mesh.mesh.tip_relief_radius)[0]
+        positions = np.arange(first, geometry.contact_ratio + 1.0) * geometry.base_pitch
+        radii = curvature_radii(geometry, positions)[2]
+        relief = separation(geometry, positions, mesh.mesh.tip_relief_radius)[0]
         # a pair that tip relief holds far off carries nothing
         self.pairs: list[tuple[PairContact, float]] = [
             (replace(contact, radius=float(radius)), float(away))

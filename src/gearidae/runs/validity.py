@@ -20,7 +20,7 @@ from gearidae.contact.asperity_statistics import (
     density_product,
     expected_asperities,
     half_spacing,
-    mean_square_place,
+    mean_square_position,
     zero_load_radius,
 )
 from gearidae.contact.surroundings import (
@@ -213,7 +213,7 @@ def _memory(scene: Scene, rest: Rest) -> ValidityRow:
     ratio, holds, verdict = math.nan, False, ""
     if not math.isnan(rest.gap):
         squares = [
-            mean_square_place(rest.gap + part.gap_offset, contact.radius, part.surface)
+            mean_square_position(rest.gap + part.gap_offset, contact.radius, part.surface)
             for part in contact.parts
         ]
         width = 4.0 * math.sqrt(

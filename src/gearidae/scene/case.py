@@ -56,8 +56,8 @@ def load_case(path: str | os.PathLike[str]) -> Scene:
 
 def _unquoted(text: str, error: ValueError) -> str:
     """Advise to quote a number with its unit, where that is what TOML does not understand; else nothing."""
-    place = _LINE.search(str(error))
-    bare = place and _BARE_UNIT.search(text.splitlines()[int(place[1]) - 1])
+    found = _LINE.search(str(error))
+    bare = found and _BARE_UNIT.search(text.splitlines()[int(found[1]) - 1])
     return f': quote a number with its unit, "{bare[1].strip()}"' if bare else ""
 
 

@@ -42,14 +42,14 @@ def _as_rows(value: object) -> object:
     if len(value) > _MOST_TEETH:
         raise ValueError(f"has {len(value)} rows; there may be {_MOST_TEETH} at most")
     rows = tuple(tuple(row) if isinstance(row, (list, tuple)) else (row,) for row in value)
-    places = {len(row) for row in rows}
-    if len(places) > 1:
+    positions = {len(row) for row in rows}
+    if len(positions) > 1:
         first = next(k for k, row in enumerate(rows) if len(row) != len(rows[0]))
         raise ValueError(
             f"row {first + 1} has {len(rows[first])} places and the first {len(rows[0])}: all must have as many"
         )
-    if not places <= set(range(1, MOST_PLACES + 1)):
-        raise ValueError(f"has {places.pop()} places; there must be 1..{MOST_PLACES}")
+    if not positions <= set(range(1, MOST_PLACES + 1)):
+        raise ValueError(f"has {positions.pop()} places; there must be 1..{MOST_PLACES}")
     return rows
 
 
@@ -78,12 +78,12 @@ def fraction_at(table: Sequence[Sequence[float]], tooth: ArrayLike, place: Array
         Fractions [1], of the broadcast shape.
     """
     values = np.asarray(table, dtype=np.float64)
-    teeth, places = values.shape
+    teeth, positions = values.shape
     row, at = np.broadcast_arrays(np.asarray(tooth) % teeth, np.asarray(place, dtype=np.float64))
-    position = np.clip(at * places - 0.5, 0.0, places - 1.0)
-    low = np.minimum(position.astype(np.int64), max(places - 2, 0))
+    position = np.clip(at * positions - 0.5, 0.0, positions - 1.0)
+    low = np.minimum(position.astype(np.int64), max(positions - 2, 0))
     u = position - low
-    before, after = values[row, low], values[row, np.minimum(low + 1, places - 1)]
+    before, after = values[row, low], values[row, np.minimum(low + 1, positions - 1)]
     return np.asarray(before + (after - before) * u**3 * (10.0 - 15.0 * u + 6.0 * u**2))
 
 
@@ -121,8 +121,8 @@ def path_means(
     -------
     first, second, product : float
     """
-    places = max(len(pinion[0]), len(gear[0]))
-    along = (np.arange(_POINTS * places) + 0.5) / (_POINTS * places)
+    positions = max(len(pinion[0]), len(gear[0]))
+    along = (np.arange(_POINTS * positions) + 0.5) / (_POINTS * positions)
     sides = [fraction_at(table, np.arange(len(table))[:, None], along) for table in (pinion, gear)]
     meets = math.gcd(*(len(side) for side in sides))
     first, second = (side.reshape(-1, meets, along.size).mean(axis=0) for side in sides)

@@ -279,5 +279,5 @@ def _unknown(key: str, known: list[str]) -> str:
 def _numbered(key: str) -> tuple[str, str]:
     """Find the list that a key names an entry of, and the entry's number; without one, that is empty."""
     parts = key.split(".")
-    place = next((place for place, part in enumerate(parts) if part.isdecimal()), len(parts))
-    return ".".join(parts[:place]), "".join(parts[place : place + 1])
+    index = next((index for index, part in enumerate(parts) if part.isdecimal()), len(parts))
+    return ".".join(parts[:index]), "".join(parts[index : index + 1])

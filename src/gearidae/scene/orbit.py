@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from gearidae.scene.scene import GearScene, Scene
 
 KEY: Final = "gears.pinion_hub_clearance"
-_LOOKS: Final = 129
+_TIMES: Final = 129
 """Times in a run at which the force of the drive is looked at."""
 _OTHERS: Final = ((1.0, 0.0), (2.5, 0.0), (0.0, 1e3), (0.0, -1e3))
 """Angles [rad] and speeds [rad/s] at which its direction must be the same."""
@@ -71,11 +71,11 @@ def _speed(scene: GearScene, t: float, ahead: float) -> float:
     return (2.0 * _turned(at, near) - 0.5 * _turned(at, far)) / ahead
 
 
-def _looks(scene: GearScene, begin: float) -> Floats:
-    return np.linspace(begin, begin + scene.run.duration, _LOOKS)
+def _times(scene: GearScene, begin: float) -> Floats:
+    return np.linspace(begin, begin + scene.run.duration, _TIMES)
 
 
-def fastest_turn(scene: GearScene, begin: float = 0.0) -> float:
+def fastest_rotation(scene: GearScene, begin: float = 0.0) -> float:
     """Largest angular speed of the direction of the drive's force that looks at a run find [rad/s].
 
     Parameters
@@ -85,7 +85,7 @@ def fastest_turn(scene: GearScene, begin: float = 0.0) -> float:
     begin : float, optional
         Time at which the run begins [s].
     """
-    times = _looks(scene, begin)
+    times = _times(scene, begin)
     ahead = _APART * (times[1] - times[0])
     return max(abs(_speed(scene, float(t), -ahead if t > begin else ahead)) for t in times)
 
@@ -98,8 +98,8 @@ def journal_speeds(scene: GearScene) -> tuple[float, float]:
     gears, geometry = scene.gears, scene.geometry
     radius = geometry.base_radius_pinion / math.cos(geometry.pressure_angle)
     mass = 2.0 * gears.pinion_inertia / radius**2
-    least = min(math.hypot(*_force(scene, float(t))) for t in _looks(scene, 0.0))
-    return math.sqrt(least / (mass * gears.pinion_hub_clearance)), fastest_turn(scene)
+    least = min(math.hypot(*_force(scene, float(t))) for t in _times(scene, 0.0))
+    return math.sqrt(least / (mass * gears.pinion_hub_clearance)), fastest_rotation(scene)
 
 
 def check_orbit(scene: GearScene) -> None:
@@ -134,7 +134,7 @@ def check_orbit(scene: GearScene) -> None:
         raise SceneError(
             KEY, shown, f"the force of the law {law} may jump where it switches: choose another law"
         )
-    for t in _looks(scene, 0.0).tolist():
+    for t in _times(scene, 0.0).tolist():
         force = _force(scene, t)
         if not math.hypot(*force) > 0.0:
             raise SceneError(
@@ -158,7 +158,7 @@ def _check_knots(scene: GearScene, shown: object) -> None:
     if knots is None:
         return
     times = np.array(knots(np.array(scene.drive.law.numbers()), duration), dtype=np.float64).ravel()
-    ahead, fastest = _APART * duration / (_LOOKS - 1), fastest_turn(scene)
+    ahead, fastest = _APART * duration / (_TIMES - 1), fastest_rotation(scene)
     for t in times[(times > 2.0 * ahead) & (times < duration - 2.0 * ahead)].tolist():
         before, behind = _speed(scene, t, -ahead), _speed(scene, t, ahead)
         jumps = (

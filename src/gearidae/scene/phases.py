@@ -24,7 +24,7 @@ _WHOLE: Final = 1e-12
 class _Met(NamedTuple):
     """A gear in the first of its meshes: p, the direction to the other gear [rad], and whether it is driven there."""
 
-    place: float
+    position: float
     direction: float
     driven: bool
 
@@ -169,7 +169,7 @@ def _follow(mesh: TrainMesh, side: str, gear: _Met, senses: Sequence[int], gap: 
     direction = mesh.angle + math.pi * driven
     half = 0.5 * (driven != gear.driven)
     turned = teeth * sense * (gear.direction - direction) / (2.0 * math.pi)
-    return gear.place + half + turned + _zero(mesh, side, gap)
+    return gear.position + half + turned + _zero(mesh, side, gap)
 
 
 def _wrapped(phase: float) -> float:

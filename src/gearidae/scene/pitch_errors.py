@@ -90,8 +90,8 @@ def _error_column(headings: Sequence[str]) -> int | None:
     """Index of the column of errors: the only one, or the one of that name."""
     if len(headings) == 1:
         return 0
-    places = [k for k, heading in enumerate(headings) if split_unit(heading.strip())[0] == _NAME]
-    return places[0] if len(places) == 1 else None
+    columns = [k for k, heading in enumerate(headings) if split_unit(heading.strip())[0] == _NAME]
+    return columns[0] if len(columns) == 1 else None
 
 
 def has_pitch_errors(scene: Scene) -> bool:

@@ -235,13 +235,13 @@ def train_of(scene: Scene) -> Train:
     bare = [_mesh(scene, name, entry, teeth, home) for name, entry in meshes.items()]
     _check_direction(list(shafts), bare, drive)
     _check_sizes(bare)
-    places, tree = _walk(list(shafts), bare, drive)
-    loops = _check_loops(list(shafts), bare, places, tree, drive)
-    placed = _with_angles(bare, meshes, places, tree)
+    placements, tree = _walk(list(shafts), bare, drive)
+    loops = _check_loops(list(shafts), bare, placements, tree, drive)
+    placed = _with_angles(bare, meshes, placements, tree)
     placed = with_phases(
         placed,
         [meshes[mesh.name].phase for mesh in placed],
-        [places[number][0] for number in range(len(shafts))],
+        [placements[number][0] for number in range(len(shafts))],
         initial.mesh_phase,
         initial.gap,
         drive,
@@ -252,9 +252,9 @@ def train_of(scene: Scene) -> Train:
                 name,
                 tuple(shaft.gear_teeth(name)),
                 _inertia(name, shaft, placed),
-                places[number][0],
-                places[number][1],
-                places[number][2],
+                placements[number][0],
+                placements[number][1],
+                placements[number][2],
             )
             for number, (name, shaft) in enumerate(shafts.items())
         ),
@@ -387,10 +387,10 @@ def _check_sizes(meshes: Sequence[TrainMesh]) -> None:
             raise SceneError(f"meshes.{mesh.name}", f"({gear})", f"{what}: a gear has one size")
 
 
-Places = dict[int, tuple[int, Fraction, tuple[float, float]]]
+Placements = dict[int, tuple[int, Fraction, tuple[float, float]]]
 
 
-def _walk(names: Sequence[str], meshes: Sequence[TrainMesh], drive: int) -> tuple[Places, dict[int, int]]:
+def _walk(names: Sequence[str], meshes: Sequence[TrainMesh], drive: int) -> tuple[Placements, dict[int, int]]:
     """Walk a spanning tree from the drive.
 
     Returns
@@ -400,19 +400,19 @@ def _walk(names: Sequence[str], meshes: Sequence[TrainMesh], drive: int) -> tupl
     tree : dict of int to int
         Number of the mesh through which each shaft but the drive's is reached.
     """
-    places: Places = {drive: (1, Fraction(1), (0.0, 0.0))}
+    placements: Placements = {drive: (1, Fraction(1), (0.0, 0.0))}
     tree: dict[int, int] = {}
     queue = [drive]
     for shaft in queue:
-        sense, ratio, centre = places[shaft]
+        sense, ratio, centre = placements[shaft]
         for number, mesh in enumerate(meshes):
-            if mesh.a == shaft and mesh.b not in places:
+            if mesh.a == shaft and mesh.b not in placements:
                 away = _distance(mesh)
                 there = (centre[0] + away * math.cos(mesh.angle), centre[1] + away * math.sin(mesh.angle))
-                places[mesh.b] = (-sense, ratio / mesh.ratio, there)
+                placements[mesh.b] = (-sense, ratio / mesh.ratio, there)
                 tree[mesh.b] = number
                 queue.append(mesh.b)
-    return places, tree
+    return placements, tree
 
 
 def _distance(mesh: TrainMesh) -> float:
@@ -422,7 +422,11 @@ def _distance(mesh: TrainMesh) -> float:
 
 
 def _check_loops(
-    names: Sequence[str], meshes: Sequence[TrainMesh], places: Places, tree: Mapping[int, int], drive: int
+    names: Sequence[str],
+    meshes: Sequence[TrainMesh],
+    placements: Placements,
+    tree: Mapping[int, int],
+    drive: int,
 ) -> tuple[tuple[str, ...], ...]:
     """Refuse loops that cannot turn; return the names of the meshes of each."""
     loops = []
@@ -434,17 +438,17 @@ def _check_loops(
         loop += [name for name in reversed(ways[1]) if name not in ways[0]]
         loops.append((*loop, mesh.name))
         around = f"the loop {', '.join(loops[-1])}"
-        if places[mesh.a][0] == places[mesh.b][0]:
+        if placements[mesh.a][0] == placements[mesh.b][0]:
             raise SceneError(
                 f"meshes.{mesh.name}",
                 f"({names[mesh.a]} and {names[mesh.b]} turn the same way)",
                 f"{around} has an odd number of meshes ({len(loops[-1])}), and cannot turn",
             )
-        closed = places[mesh.a][1] / mesh.ratio
-        if closed != places[mesh.b][1]:
+        closed = placements[mesh.a][1] / mesh.ratio
+        if closed != placements[mesh.b][1]:
             raise SceneError(
                 f"meshes.{mesh.name}",
-                f"({names[mesh.b]} at {places[mesh.b][1]} and at {closed} of the drive's speed)",
+                f"({names[mesh.b]} at {placements[mesh.b][1]} and at {closed} of the drive's speed)",
                 f"{around} has two ratios, and cannot turn",
             )
     return tuple(loops)
@@ -461,7 +465,7 @@ def _way(shaft: int, meshes: Sequence[TrainMesh], tree: Mapping[int, int], drive
 
 
 def _with_angles(
-    meshes: Sequence[TrainMesh], given: Mapping[str, Meshing], places: Places, tree: Mapping[int, int]
+    meshes: Sequence[TrainMesh], given: Mapping[str, Meshing], placements: Placements, tree: Mapping[int, int]
 ) -> list[TrainMesh]:
     """Take the angles of meshes that close loops from the centres, which have to fit."""
     placed = []
@@ -469,7 +473,7 @@ def _with_angles(
         if number in tree.values():
             placed.append(mesh)
             continue
-        begin, end = places[mesh.a][2], places[mesh.b][2]
+        begin, end = placements[mesh.a][2], placements[mesh.b][2]
         across = (end[0] - begin[0], end[1] - begin[1])
         wanted, there = _distance(mesh), math.hypot(*across)
         if abs(there - wanted) > _SAME_PLACE * wanted:

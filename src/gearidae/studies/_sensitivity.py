@@ -195,8 +195,8 @@ def _run(scene: Scene, figure: Figure, backend: str) -> float:
 
 def _differentiate(runs: _Runs, middle: float, size: float, rtol: float, accuracy: float) -> Sensitivity:
     """Differentiate at one tolerance."""
-    places = np.arange(_SCATTERED) - (_SCATTERED - 1) / 2.0
-    near = np.array(runs([middle + _NEIGHBOURS * size * place for place in places]))
+    offsets = np.arange(_SCATTERED) - (_SCATTERED - 1) / 2.0
+    near = np.array(runs([middle + _NEIGHBOURS * size * offset for offset in offsets]))
     figure = float(near[_SCATTERED // 2])
     scatter = max(float(np.ptp(near)), _SMALLEST_SCATTER * abs(figure))
     steps, values = np.empty(0), np.empty((0, 2))

@@ -26,8 +26,8 @@ from gearidae.studies.starting_ramp import (
     constant,
     least_damping,
     nothing_followed,
+    phase_of_seed,
     pitch_of,
-    place_of_seed,
     probe,
     ramp,
     ramp_end,
@@ -204,10 +204,10 @@ def _in_parts(designs: Sequence[_Design], values: Floats) -> list[tuple[_Design,
 def quantiles(torques: Floats) -> Floats:
     """Quantiles of torques that are known, interpolated between the ordered ones; infinite from the first that is."""
     ordered = np.sort(torques[~np.isnan(torques)])
-    place = np.array(QUANTILES) * (ordered.size - 1)
-    low, high = ordered[np.floor(place).astype(int)], ordered[np.ceil(place).astype(int)]
+    rank = np.array(QUANTILES) * (ordered.size - 1)
+    low, high = ordered[np.floor(rank).astype(int)], ordered[np.ceil(rank).astype(int)]
     with np.errstate(invalid="ignore"):
-        between = low + (place % 1.0) * (high - low)
+        between = low + (rank % 1.0) * (high - low)
     return np.where(np.isfinite(high), between, np.inf)
 
 
@@ -230,8 +230,8 @@ def _dataset(
     numbers: Sequence[int],
     designs: Sequence[_Design],
 ) -> xr.Dataset:
-    places = [place_of_seed(base, number) for number in numbers]
-    axes = {"place": np.array(places), "seed": np.array(numbers), "quantile": np.array(QUANTILES)}
+    phases = [phase_of_seed(base, number) for number in numbers]
+    axes = {"place": np.array(phases), "seed": np.array(numbers), "quantile": np.array(QUANTILES)}
     axes["part"] = np.array(PARTS)
     values = {name: np.asarray(column) for name, column in _columns(designs).items()}
     attributes = {

@@ -92,17 +92,17 @@ def _one_run(ds: xr.Dataset) -> xr.Dataset:
 def _nearest(run: xr.Dataset, wanted: Floats) -> Integers:
     """Return which samples are nearest to some times; those of a single run are evenly spaced."""
     last = motion_samples(run) - 1
-    start, end = (float(run["time"][place]) for place in (0, last))
+    start, end = (float(run["time"][index]) for index in (0, last))
     step = (end - start) / last if last > 0 else 1.0
     wanted = np.where(wanted == math.inf, end, wanted)
     for time in wanted:
         if not start - step <= time <= end + step:
             raise SceneError("time", float(time), f"must lie in the record, {start:g}..{end:g} s")
     if "chain" in run.attrs:
-        places = np.interp(wanted, run["time"].values[: last + 1], np.arange(last + 1))
+        indices = np.interp(wanted, run["time"].values[: last + 1], np.arange(last + 1))
     else:
-        places = (wanted - start) / step
-    return np.clip(np.rint(places).astype(np.int64), 0, last)
+        indices = (wanted - start) / step
+    return np.clip(np.rint(indices).astype(np.int64), 0, last)
 
 
 def _parts(run: xr.Dataset, samples: Integers) -> Iterator[tuple[GearScene, Mapping[Any, Any], Integers]]:

@@ -219,14 +219,14 @@ def _of_text(key: str, text: str, unit: str) -> Any:
             key, shorten(text), f"must be {form}: {len(kind.arguments)} values, not {len(parts)}"
         )
     numbers = []
-    for place, part in enumerate(parts):
+    for index, part in enumerate(parts):
         try:
-            part_unit = "1" if place in kind.pure else unit
-            numbers.append(_number(part, part_unit, difference=place in kind.spread))
+            part_unit = "1" if index in kind.pure else unit
+            numbers.append(_number(part, part_unit, difference=index in kind.spread))
         except ValueError as error:
-            raise SceneError(key, shorten(text), f"{kind.arguments[place]} {error}") from None
+            raise SceneError(key, shorten(text), f"{kind.arguments[index]} {error}") from None
     try:
-        refuse_bare(part for place, part in enumerate(parts) if place not in kind.pure)
+        refuse_bare(part for index, part in enumerate(parts) if index not in kind.pure)
     except ValueError as error:
         raise SceneError(key, shorten(text), str(error)) from None
     if not all(map(math.isfinite, numbers)) or not kind.sound(*numbers):

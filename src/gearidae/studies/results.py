@@ -356,8 +356,8 @@ def _picked(ds: xr.Dataset, name: str, value: Any) -> xr.Dataset:
         return ds
     (dim,) = ds[name].dims
     assert dim in dims
-    places = np.flatnonzero(matches)
-    return ds.isel({dim: int(places[0]) if len(places) == 1 else places})
+    indices = np.flatnonzero(matches)
+    return ds.isel({dim: int(indices[0]) if len(indices) == 1 else indices})
 
 
 def _plain(label: xr.DataArray, value: Any) -> Any:

@@ -113,7 +113,7 @@ def seated(scene: GearScene, seeds: Mapping[str, int]) -> GearScene:
     at = scene.replace(
         {
             **seeds,
-            "initial.mesh_phase": place_of_seed(scene, seed),
+            "initial.mesh_phase": phase_of_seed(scene, seed),
             "initial.gear_speed": 0.0,
             "mesh.damping": least_damping(scene),
             "run.stop": f"turns {1.0 / scene.gears.gear_teeth!r}",
@@ -126,7 +126,7 @@ def seated(scene: GearScene, seeds: Mapping[str, int]) -> GearScene:
     return at.replace({"initial.gap": first_touch(at)})
 
 
-def place_of_seed(scene: GearScene, seed: int) -> float:
+def phase_of_seed(scene: GearScene, seed: int) -> float:
     """Place at which a gear of a seed starts, in pitches of the pinion."""
     return float(np.random.default_rng([seed, 99]).random() * scene.gears.pinion_teeth)
 

@@ -285,7 +285,7 @@ class Study:
         settings: object,
         *,
         origin: Scene | None = None,
-        keep: OutputSelection = EVERYTHING,
+        selection: OutputSelection = EVERYTHING,
         **more: Any,
     ) -> xr.Dataset:
         """Compute the dataset by `work`, whose runs are kept beside the archive until it is written.
@@ -298,7 +298,7 @@ class Study:
             What the result depends on besides the scene, ready for JSON.
         origin : Scene, optional
             The scene that the question was about; by default `base`.
-        keep : OutputSelection, optional
+        selection : OutputSelection, optional
             What each run leaves behind.
         **more
             As for `gearidae.runs.execution.run_kept`, whose errors these are too.
@@ -307,7 +307,7 @@ class Study:
         from gearidae.runs.run_cache import RunCache
 
         def store(target: Path) -> RunCache:
-            return RunCache(target, base, execution.driver, keep)
+            return RunCache(target, base, execution.driver, selection)
 
         about = {**origin_of(base if origin is None else origin), "settings": json.dumps(settings)}
         return run_kept(execution, store, work, about, read=self.open, **more)

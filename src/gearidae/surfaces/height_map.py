@@ -178,7 +178,7 @@ def _filled(levelled: Floats, holes: Flags) -> Floats:
     points = np.argwhere(holes) + 1
     diagonal = np.zeros(len(points))
     right = np.zeros(len(points))
-    places = [np.arange(len(points))]
+    row_indices = [np.arange(len(points))]
     others = [np.arange(len(points))]
     entries: list[Floats] = []
     for step in ((0, 1), (0, -1), (1, 0), (-1, 0)):
@@ -187,11 +187,11 @@ def _filled(levelled: Floats, holes: Flags) -> Floats:
         diagonal += neighbour != -2
         right += np.where(neighbour == -1, padded_height[rows, columns], 0.0)
         missing = np.flatnonzero(neighbour >= 0)
-        places.append(missing)
+        row_indices.append(missing)
         others.append(neighbour[missing])
         entries.append(-np.ones(len(missing)))
     matrix = sparse.csc_matrix(
-        (np.concatenate([diagonal, *entries]), (np.concatenate(places), np.concatenate(others)))
+        (np.concatenate([diagonal, *entries]), (np.concatenate(row_indices), np.concatenate(others)))
     )
     filled[holes] = linalg.spsolve(matrix, right)
     return filled

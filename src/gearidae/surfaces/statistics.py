@@ -136,15 +136,15 @@ def asperities(surface: HeightMap, cutoff: float) -> xr.Dataset:
     field = band_limited(cosine_sum(surface.heights), surface.size, cutoff)
     wanted = _wanted(surface, field, cutoff)
     summits = find_summits(field, wanted)
-    order = np.argsort(summits.places[1], kind="stable")
+    order = np.argsort(summits.positions[1], kind="stable")
     edges, sides = [], []
     for axis, step in enumerate(field.spacing):
         inside = np.flatnonzero(wanted.any(axis=1 - axis))
         edges.append((inside[0] - 0.5) * step)
         sides.append(float((inside[-1] + 1 - inside[0]) * step))
     columns = {
-        "along": (summits.places[1] - edges[1], "place along the columns' index"),
-        "across": (summits.places[0] - edges[0], "place along the rows' index"),
+        "along": (summits.positions[1] - edges[1], "place along the columns' index"),
+        "across": (summits.positions[0] - edges[0], "place along the rows' index"),
         "height": (summits.heights - summits.heights.mean(), "height above the summits' mean plane"),
         "radius": (1.0 / summits.curvatures, "radius of the tip"),
     }
@@ -216,11 +216,11 @@ def _wanted(surface: HeightMap, field: Field, cutoff: float) -> NDArray[np.bool_
         deep = ndimage.distance_transform_edt(surface.holes, sampling=steps) > cutoff / 8
         if deep.any():
             far = ndimage.distance_transform_edt(~deep, sampling=steps) > 5 * cutoff / 8
-            places = [
+            indices = [
                 np.minimum(((np.arange(count) + 0.5) * points / count).astype(int), points - 1)
                 for count, points in zip(field.heights.shape, surface.holes.shape, strict=True)
             ]
-            inside &= far[np.ix_(*places)]
+            inside &= far[np.ix_(*indices)]
     if not inside.any():
         raise SceneError(
             "cutoff", f"{cutoff:.4g} m", "leaves nothing of the map between its edges and its holes"

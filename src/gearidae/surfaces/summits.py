@@ -23,13 +23,13 @@ class Summits(NamedTuple):
         [m].
     curvatures : ndarray, shape (n,)
         Mean of both principal curvatures, positive [1/m].
-    places : ndarray, shape (2, n)
+    positions : ndarray, shape (2, n)
         Along both indices, from the first point of the grid [m].
     """
 
     heights: Floats
     curvatures: Floats
-    places: Floats
+    positions: Floats
 
 
 def find_summits(field: Field, wanted: NDArray[np.bool_]) -> Summits:
@@ -50,12 +50,12 @@ def find_summits(field: Field, wanted: NDArray[np.bool_]) -> Summits:
     """
     highest = ndimage.maximum_filter(field.heights, footprint=_NEIGHBOURS, mode="nearest")
     rows, columns = np.nonzero((field.heights > highest) & wanted)
-    places = np.stack([rows, columns]).astype(np.float64) + _to_the_top(field, rows, columns)
+    positions = np.stack([rows, columns]).astype(np.float64) + _to_the_top(field, rows, columns)
     heights, laplacian = (
-        ndimage.map_coordinates(values, places, order=3, mode="nearest")
+        ndimage.map_coordinates(values, positions, order=3, mode="nearest")
         for values in (field.heights, field.curvature)
     )
-    return Summits(heights, -0.5 * laplacian, places * np.array(field.spacing)[:, None])
+    return Summits(heights, -0.5 * laplacian, positions * np.array(field.spacing)[:, None])
 
 
 def _to_the_top(field: Field, rows: NDArray[np.intp], columns: NDArray[np.intp]) -> Floats:

@@ -154,8 +154,8 @@ class FreeTrain:
 
     def _waits(self, begin: float, end: float, angle: float) -> float:
         """Time at which a train at rest begins to move, or the end."""
-        looks = np.linspace(begin, end, _LOOKS + 1)
-        for before, t in pairwise(looks):
+        sampled_times = np.linspace(begin, end, _LOOKS + 1)
+        for before, t in pairwise(sampled_times):
             if self._let_go(float(t), angle) != 0.0:
                 low, high = float(before), float(t)
                 for _ in range(50):

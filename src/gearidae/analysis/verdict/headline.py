@@ -42,7 +42,7 @@ def _limit(ds: xr.Dataset, subject: str, judged: Sequence[GearOutcome | RollerOu
     if values.dtype.kind not in "fiu" or any(outcome.verdict == "unfinished" for outcome in judged):
         return ""
     order = np.argsort(values)
-    stuck = [judged[place].verdict in STUCK for place in order]
+    stuck = [judged[index].verdict in STUCK for index in order]
     changes = [k for k, (before, after) in enumerate(pairwise(stuck)) if before != after]
     if len(changes) != 1:
         return ""

@@ -181,11 +181,11 @@ def _standstills(motion: _Motion, free: FreeTrain) -> Iterator[_Standstill]:
     until, low, high = -math.inf, math.inf, -math.inf
     earlier: list[float] = []
     for zero in motion.zeros():
-        place = motion.at(zero)
-        if zero < until or low < place < high:
+        position = motion.at(zero)
+        if zero < until or low < position < high:
             continue
         inside = np.flatnonzero(motion.time >= zero)
-        away = np.abs(motion.angle[inside] - place) / motion.pitch
+        away = np.abs(motion.angle[inside] - position) / motion.pitch
         left = np.flatnonzero(away >= HALF_PITCH)
         lasts = left.size == 0
         inside = inside if lasts else inside[: left[0]]
@@ -193,7 +193,7 @@ def _standstills(motion: _Motion, free: FreeTrain) -> Iterator[_Standstill]:
         still = _judged(motion, free, earlier, zero, end)
         if still is None:
             earlier.append(zero)
-            low, high = min(low, place), max(high, place)
+            low, high = min(low, position), max(high, position)
             continue
         if not lasts:
             slips = [slip for _, slip in motion.rests if zero < slip <= end]
@@ -206,7 +206,7 @@ def _judged(
     motion: _Motion, free: FreeTrain, earlier: list[float], zero: float, end: float
 ) -> _Standstill | None:
     """Judge the time from a zero to an end, in which the shaft has stayed within half a pitch; None if it moves."""
-    place = motion.at(zero)
+    position = motion.at(zero)
     times, away, drifted = _ways(motion, free, zero, end)
     advance = float(away.max())
     ahead, half = float(drifted.max()), times <= 0.5 * (zero + end)
@@ -216,8 +216,10 @@ def _judged(
         return None
     if not together and turns_round(zero, end, ahead, _followed(motion, free, earlier, end)):
         return None
-    looks = np.linspace(zero, end, _LOOKS)
-    beyond = np.array([abs(free.driving(t, place, 0.0)) - free.dry(t, place, 0.0) for t in looks])
+    sampled_times = np.linspace(zero, end, _LOOKS)
+    beyond = np.array(
+        [abs(free.driving(t, position, 0.0)) - free.dry(t, position, 0.0) for t in sampled_times]
+    )
     rest = sum(max(min(stop, end) - max(start, zero), 0.0) for start, stop in motion.rests)
     return _Standstill(
         begin=zero,
@@ -234,12 +236,12 @@ def _judged(
 
 def _ways(motion: _Motion, free: FreeTrain, zero: float, end: float) -> tuple[Floats, Floats, Floats]:
     """Times from a zero to an end, and distances from the zero of the shaft and of free gears [pitches]."""
-    place = motion.at(zero)
+    position = motion.at(zero)
     times = np.union1d(motion.time[(motion.time >= zero) & (motion.time < end)], [end])
-    away = np.abs(np.interp(times, motion.time, motion.angle) - place) / motion.pitch
+    away = np.abs(np.interp(times, motion.time, motion.angle) - position) / motion.pitch
     # of a run that goes on the torques before its start are not known
-    drifted = free.positions(max(zero, motion.begin), place, times)
-    return times, away, np.abs(drifted - place) / motion.pitch
+    drifted = free.positions(max(zero, motion.begin), position, times)
+    return times, away, np.abs(drifted - position) / motion.pitch
 
 
 def _followed(motion: _Motion, free: FreeTrain, earlier: list[float], end: float) -> Iterator[Followed]:
@@ -254,24 +256,24 @@ def _followed(motion: _Motion, free: FreeTrain, earlier: list[float], end: float
 def _back(motion: _Motion, free: FreeTrain) -> dict[str, float]:
     """Distances by which the shaft, and free gears from the same zero, have gone back at the end."""
     nothing = {"turned_back": 0.0, "free_turned_back": 0.0, "back_time": math.nan}
-    places = motion.angle / motion.pitch
+    positions = motion.angle / motion.pitch
     top, low, forward, turned = 0, 0, True, 0
-    for k, place in enumerate(places):
+    for k, position in enumerate(positions):
         if forward:
-            top = k if place > places[top] else top
-            if places[top] - place > HALF_PITCH:
+            top = k if position > positions[top] else top
+            if positions[top] - position > HALF_PITCH:
                 forward, low, turned = False, k, top
         else:
-            low = k if place < places[low] else low
-            if place - places[low] > HALF_PITCH:
+            low = k if position < positions[low] else low
+            if position - positions[low] > HALF_PITCH:
                 forward, top = True, k
     if forward:
         return nothing
     since = float(motion.time[turned])
     drifted = free.positions(since, float(motion.angle[turned]), motion.time[turned:]) / motion.pitch
     return {
-        "turned_back": float(places[turned] - places[-1]),
-        "free_turned_back": max(float(places[turned] - drifted[-1]), 0.0),
+        "turned_back": float(positions[turned] - positions[-1]),
+        "free_turned_back": max(float(positions[turned] - drifted[-1]), 0.0),
         "back_time": since,
     }
 

@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 
 
 def train_dataset(
-    scene: TrainScene, solution: TrainSolution, keep: OutputSelection = EVERYTHING
+    scene: TrainScene, solution: TrainSolution, selection: OutputSelection = EVERYTHING
 ) -> xr.Dataset:
     """Label one run of a train.
 
@@ -57,7 +57,7 @@ def train_dataset(
         The scene exactly as it was run.
     solution : TrainSolution
         Result of the engine, judged.
-    keep : OutputSelection, optional
+    selection : OutputSelection, optional
         Which variables the dataset has; by default all.
 
     Returns
@@ -91,7 +91,7 @@ def train_dataset(
     variables[REST_LIST.name] = ((), _rests(solution), REST_LIST.attributes)
     variables["reached"] = ((), solution.reached, OF_SWEPT_RUN["reached"].attributes)
     return xr.Dataset(
-        {name: entry for name, entry in variables.items() if keep.holds(str(name))},
+        {name: entry for name, entry in variables.items() if selection.holds(str(name))},
         coords={
             "time": ("time", solution.time, TIME.attributes),
             **run_label(scene),

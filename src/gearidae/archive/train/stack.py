@@ -33,7 +33,7 @@ def stack_trains(
     scenes: Sequence[TrainScene],
     solutions: Sequence[TrainSolution],
     *,
-    keep: OutputSelection = EVERYTHING,
+    selection: OutputSelection = EVERYTHING,
 ) -> xr.Dataset:
     """Put runs of trains into one dataset.
 
@@ -45,7 +45,7 @@ def stack_trains(
         For each dimension, the values of its keys in SI units; several keys where they are zipped.
     scenes, solutions : sequence
         One for each run; shafts and meshes have the same names in all. The last axis changes fastest.
-    keep : OutputSelection, optional
+    selection : OutputSelection, optional
         Which variables the dataset has; by default all.
 
     Returns
@@ -58,7 +58,7 @@ def stack_trains(
     dims, shape = tuple(names.values()), tuple(len(values) for values in leaders.values())
     labels = {names[key]: key_labels(key, names[key], values) for key, values in leaders.items()}
     members = [
-        train_dataset(scene, solution, keep) for scene, solution in zip(scenes, solutions, strict=True)
+        train_dataset(scene, solution, selection) for scene, solution in zip(scenes, solutions, strict=True)
     ]
     first, longest = members[0], max((member["time"] for member in members), key=len)
     members = [member.reindex(time=longest) for member in members]
@@ -71,7 +71,7 @@ def stack_trains(
 
     variables: dict[Hashable, Any] = {}
     coords: dict[Hashable, Any] = {}
-    if keep.columns(base):
+    if selection.columns(base):
         coords["time"] = ("time", longest.values, longest.attrs)
     coords.update(labels)
     for name, variable in first.data_vars.items():
@@ -89,11 +89,11 @@ def stack_trains(
     if "event_time" in first:
         add_row_labels(variables, "event", labels, [member.sizes["event"] for member in members])
     for name, known in _OF_RUN.items():
-        if keep.holds(name):
+        if selection.holds(name):
             variables[name] = _column(known, [member.attrs[name] for member in members], dims, shape)
     held = [member.attrs.get("held_by", "") for member in members]
     variables[HELD_BY.name] = _column(HELD_BY, held, dims, shape)
-    if keep.holds("scene"):
+    if selection.holds("scene"):
         inputs = [json.dumps(scene.to_dict(), allow_nan=False) for scene in scenes]
         variables["scene"] = _column(OF_SWEPT_RUN["scene"], inputs, dims, shape)
     if SAM_FRACTION.name not in dims:
@@ -104,7 +104,7 @@ def stack_trains(
         coords=coords,
         attrs={
             **sweep_attributes(base, leaders, [member.attrs["status"] for member in members]),
-            **({} if keep.names is None else {"keep": json.dumps(keep.asked)}),
+            **({} if selection.names is None else {"keep": json.dumps(selection.asked)}),
             **{name: sum(int(member.attrs[name]) for member in members) for name in _TOTALS},
             "wall_time": float(sum(member.attrs["wall_time"] for member in members)),
             **{name: ", ".join(sorted(texts)) for name, texts in drivers.items()},

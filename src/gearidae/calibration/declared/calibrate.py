@@ -42,7 +42,7 @@ log = logging.getLogger(__name__)
 
 _ONE_CELL: Final = 0.9
 """Share of a posterior in one cell of its grid above which the cell is wider than the posterior."""
-_FAR: Final = 4.0
+_SPREADS_AWAY: Final = 4.0
 """Uncertainties beyond all runs from which an observation is far from them."""
 _EXAMPLE: Final = "'sticks=true; drive.torque=4.2e-18' or 'ring_frequency=5.2 kHz +- 0.1 kHz'"
 _STEPS_WANTED: Final = 50
@@ -124,9 +124,9 @@ def calibrate(
     def likelihood(values: Floats, shown: bool | SweepProgress = False) -> Floats:
         figures = predictor.figures(values, shown)
         if chosen == "grid":  # a sampler comes to points that it leaves again
-            for place, observation in enumerate(seen):
-                _doubt_observation(observation, figures[:, place])
-        parts = [observation.log_likelihood(figures[:, place]) for place, observation in enumerate(seen)]
+            for index, observation in enumerate(seen):
+                _doubt_observation(observation, figures[:, index])
+        parts = [observation.log_likelihood(figures[:, index]) for index, observation in enumerate(seen)]
         return np.asarray(np.sum(parts, axis=0), dtype=np.float64)
 
     names = list(dimension_names(keys).values())
@@ -171,7 +171,7 @@ def _doubt_observation(seen: Observation, predicted: Floats) -> None:
     if seen.of == STICKS or not known.size:
         return
     low, high, value = known.min(), known.max(), float(seen.value)
-    if not low - _FAR * seen.spread <= value <= high + _FAR * seen.spread:
+    if not low - _SPREADS_AWAY * seen.spread <= value <= high + _SPREADS_AWAY * seen.spread:
         log.warning("no run comes near %s = %g: theirs are %g to %g", seen.figure, value, low, high)
 
 
@@ -312,11 +312,11 @@ def _announced(
 def _observation(text: str) -> Observation:
     """Read ``figure=value +- uncertainty; key=value; misjudged=share``."""
     entry: dict[str, Any] = {}
-    for place, pair in enumerate(text.split(";")):
+    for index, pair in enumerate(text.split(";")):
         name, equals, value = (part.strip() for part in pair.partition("="))
         if not (name and equals and value) or name in entry:
             raise SceneError("--seen", text, f"must read figure=value and conditions, such as {_EXAMPLE}")
-        if place == 0:
+        if index == 0:
             measured, _, uncertainty = (
                 part.strip() for part in value.replace("\u00b1", "+-").partition("+-")
             )

@@ -108,12 +108,12 @@ def posterior_draws(posterior: xr.Dataset, size: int, seed: int = 0) -> dict[str
         return {key: posterior[names[key]].values[drawn] for key in keys}
     weight = posterior["weight"]
     cells = generator.choice(weight.size, size, p=weight.values.ravel() / weight.values.sum())
-    places = np.unravel_index(cells, weight.shape)
+    indices = np.unravel_index(cells, weight.shape)
     values = {}
-    for key, place in zip(keys, places, strict=True):
+    for key, index in zip(keys, indices, strict=True):
         axis = posterior[names[key]].values
         width = axis[1] - axis[0]
-        values[key] = axis[place] + width * (generator.random(size) - 0.5)
+        values[key] = axis[index] + width * (generator.random(size) - 0.5)
     return values
 
 

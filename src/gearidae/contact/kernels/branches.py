@@ -9,7 +9,7 @@ import numpy as np
 
 from gearidae.arrays import Floats
 from gearidae.compiled import compiled
-from gearidae.contact.kernels.division import place_above
+from gearidae.contact.kernels.division import position_above
 from gearidae.contact.kernels.evaluate import coefficients, power8, value_and_slope
 from gearidae.contact.kernels.lanes import eight_powers
 from gearidae.contact.kernels.layout import (
@@ -86,10 +86,12 @@ def branch_value(branch: Floats, stretch: float) -> tuple[float, float]:
     share = branch[B_SHARE]
     v = math.sqrt(max(1.0 - stretch * share, 0.0))
     scale = branch[B_BELOW]
-    place = v * scale
+    position = v * scale
     if v >= branch[B_KINK]:
-        place, scale = place_above(branch[B_BEFORE], branch[B_PIECES], branch[B_ABOVE], v - branch[B_KINK])
-    piece = min(int(place), int(branch[B_PIECES]) - 1)
-    r = 2.0 * (place - piece) - 1.0
+        position, scale = position_above(
+            branch[B_BEFORE], branch[B_PIECES], branch[B_ABOVE], v - branch[B_KINK]
+        )
+    piece = min(int(position), int(branch[B_PIECES]) - 1)
+    r = 2.0 * (position - piece) - 1.0
     f, d = value_and_slope(coefficients(branch, np.uintp(B_BODY + (DEGREE + 1) * piece)), r)
     return branch[B_END] + v * v * f, -(f + v * scale * d) * share

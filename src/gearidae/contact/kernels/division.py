@@ -74,15 +74,15 @@ class Division(NamedTuple):
 
 
 @compiled(inline=True)
-def place_of(table: Floats, v: float) -> tuple[float, float]:
+def position_of(table: Floats, v: float) -> tuple[float, float]:
     """Position of v among the pieces of a table, whose whole part is the piece, and one over the length of that."""
     if v < table[H_KINK]:
         return v * table[H_BELOW], table[H_BELOW]
-    return place_above(table[H_BEFORE], table[H_PIECES], table[H_ABOVE], v - table[H_KINK])
+    return position_above(table[H_BEFORE], table[H_PIECES], table[H_ABOVE], v - table[H_KINK])
 
 
 @compiled
-def place_above(before: float, pieces: float, above: float, beyond: float) -> tuple[float, float]:
+def position_above(before: float, pieces: float, above: float, beyond: float) -> tuple[float, float]:
     """Position of a v among the pieces above the kink, given its distance from it, and one over its piece's length."""
     x = beyond * above
     j = min(math.floor(math.sqrt(x)), pieces - before - 1.0)

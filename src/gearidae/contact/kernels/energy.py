@@ -169,8 +169,8 @@ def _potential(pieces: Floats, low: float) -> Floats:
     knots = low + h * np.arange(len(pieces) + 1)
     x, w = gauss_rule(_GAUSS)
     u = 0.5 * (x + 1.0)
-    places = np.maximum(knots[:-1, None] + h * u, 0.0)
-    values = pieces @ np.vander(u, 8, increasing=True).T * np.exp(-0.5 * places**2)
+    positions = np.maximum(knots[:-1, None] + h * u, 0.0)
+    values = pieces @ np.vander(u, 8, increasing=True).T * np.exp(-0.5 * positions**2)
     parts = 0.5 * h * values @ w
     total = np.append(np.cumsum(parts[::-1])[::-1], 0.0)
     ends = []
@@ -183,9 +183,9 @@ def _potential(pieces: Floats, low: float) -> Floats:
         at = np.where(knots[:-1] >= 0.0, knots[span], 0.0)
         grown = total[span] * np.exp(0.5 * at**2)
         slope = at * grown - f
-        bend = np.where(knots[:-1] >= 0.0, grown, 0.0) + at * slope - f1
-        third = np.where(knots[:-1] >= 0.0, 2.0 * slope, 0.0) + at * bend - f2
-        ends += [grown, h * slope, h**2 * bend, h**3 * third]
+        second = np.where(knots[:-1] >= 0.0, grown, 0.0) + at * slope - f1
+        third = np.where(knots[:-1] >= 0.0, 2.0 * slope, 0.0) + at * second - f2
+        ends += [grown, h * slope, h**2 * second, h**3 * third]
     return np.asarray(np.stack(ends, axis=1) @ hermite_matrix().T)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from gearidae.arrays import Floats
 from gearidae.compiled import compiled
-from gearidae.contact.kernels.division import place_of
+from gearidae.contact.kernels.division import position_of
 from gearidae.contact.kernels.lanes import eight_powers
 from gearidae.contact.kernels.layout import (
     DEGREE,
@@ -140,9 +140,9 @@ def _partial(table: Floats, joined: float, stretch: float) -> tuple[float, float
     u2 = u * u
     u4 = u2 * u2
     v = math.sqrt(1.0 - stretch / limit)
-    place, scale = place_of(table, v)
-    piece = min(int(place), pieces - 1)
-    r = 2.0 * (place - piece) - 1.0
+    along, scale = position_of(table, v)
+    piece = min(int(along), pieces - 1)
+    r = 2.0 * (along - piece) - 1.0
     start = int(table[H_PARTIAL]) + 8 * (DEGREE + 1) * (j * pieces + piece)
     f, d = value_and_slope(eight_powers(table, np.uintp(start), u), r)
     end = power8(table, np.uintp(int(table[H_END]) + 8 * j), u, u2, u4)
@@ -161,7 +161,7 @@ def _sums(table: Floats, joined: float, stretch: float) -> tuple[float, float, f
         stretched an asperity times the density.
     """
     limit = table[H_STRETCH]
-    loads, works, pieces = _asperity_places(table)
+    loads, works, pieces = _asperity_offsets(table)
     offset = int(table[H_PSI])
     low = table[offset]
     count = round((GAP_HIGH - low) * KNOTS_PER_SIGMA)
@@ -195,7 +195,7 @@ def _sums(table: Floats, joined: float, stretch: float) -> tuple[float, float, f
 
 
 @compiled(inline=True)
-def _asperity_places(table: Floats) -> tuple[int, int, int]:
+def _asperity_offsets(table: Floats) -> tuple[int, int, int]:
     """Offsets of one asperity's load and of the work to stretch it, and the number of pieces of each."""
     loads, pieces = int(table[H_PARTIAL]) + 1, int(table[H_PIECES])
     return loads, loads + (DEGREE + 1) * pieces, pieces
@@ -204,9 +204,9 @@ def _asperity_places(table: Floats) -> tuple[int, int, int]:
 @compiled(inline=True)
 def _piece_value(table: Floats, offset: int, pieces: int, e: float) -> float:
     """Polynomial pieces on 0..1 at e."""
-    place, _ = place_of(table, e)
-    piece = min(int(place), pieces - 1)
-    r = 2.0 * (place - piece) - 1.0
+    position, _ = position_of(table, e)
+    piece = min(int(position), pieces - 1)
+    r = 2.0 * (position - piece) - 1.0
     r2 = r * r
     return power8(table, np.uintp(offset + (DEGREE + 1) * piece), r, r2, r2 * r2)
 
@@ -223,7 +223,7 @@ def integrated_value(table: Floats, joined: float, stretch: float) -> tuple[floa
         Z and S over roughness [1], 0 < S < D.
     """
     pull, rate, _ = _sums(table, joined, stretch)
-    loads, _, pieces = _asperity_places(table)
+    loads, _, pieces = _asperity_offsets(table)
     offset = int(table[H_PSI])
     low = table[offset]
     count = round((GAP_HIGH - low) * KNOTS_PER_SIGMA)

@@ -24,13 +24,13 @@ from gearidae.contact.kernels.layout import KNOTS_PER_SIGMA, Kernel
 
 PANEL: Final = 0.5
 """Longest panel of offsets, in roughnesses."""
-PLACES: Final = 16
+PANEL_NODES: Final = 16
 """Chebyshev nodes of a panel."""
-CLOSE: Final = 48
+CLOSE_NODES: Final = 48
 """Nodes of the rule over the law from joining to half a roughness of compression, where the load is not smooth; """
-FAR: Final = 12
+FAR_NODES: Final = 12
 """those over half a roughness beyond;"""
-STRETCHED: Final = 16
+STRETCHED_NODES: Final = 16
 """and those over a panel of stretched asperities."""
 KERNEL_END: Final = 12.0
 """Beyond which the kernel is nothing."""
@@ -44,13 +44,15 @@ def loading_derivatives(gap: Floats, law: AsperityLaw, kernel: Kernel) -> Floats
     half, panels = round(PANEL * KNOTS_PER_SIGMA), math.ceil((KERNEL_END - gap[0]) / PANEL)
     begin = PANEL * np.arange(panels)
     steps = gap[0] + np.arange(len(gap) + (panels - 1) * half) / KNOTS_PER_SIGMA
-    values = kernel_at(kernel, steps[:, None] + PANEL * _places())
+    values = kernel_at(kernel, steps[:, None] + PANEL * _panel_nodes())
     result = np.zeros((4, len(gap)))
-    for panel, weights in enumerate((*_compressed(law, begin[:1], CLOSE), *_compressed(law, begin[1:], FAR))):
+    for panel, weights in enumerate(
+        (*_compressed(law, begin[:1], CLOSE_NODES), *_compressed(law, begin[1:], FAR_NODES))
+    ):
         result += values[:, panel * half : panel * half + len(gap)] @ weights
     if law.join > 0.0:
         edges = np.linspace(-law.join, 0.0, math.ceil(law.join / PANEL) + 1)
-        rule = law.nodes(edges[:-1], edges[1:], *gauss_rule(CLOSE))
+        rule = law.nodes(edges[:-1], edges[1:], *gauss_rule(CLOSE_NODES))
         offset, weight = (numbers.reshape(1, -1) for numbers in rule)
         result += _integrals(gap, (-law.join, law.join), offset, weight, kernel)[:, :, 0]
     return result
@@ -59,7 +61,7 @@ def loading_derivatives(gap: Floats, law: AsperityLaw, kernel: Kernel) -> Floats
 def _compressed(law: AsperityLaw, begin: Floats, count: int) -> Floats:
     """Weights at the nodes of panels of compression, from a rule of so many nodes, shape (panels, PLACES)."""
     offset, weight = law.nodes(begin, begin + PANEL, *gauss_rule(count))
-    return _at_places((offset - begin[:, None]) / PANEL, weight)
+    return _weights_at_nodes((offset - begin[:, None]) / PANEL, weight)
 
 
 def stretched_derivatives(joined: Floats, law: AsperityLaw, v: Floats, kernel: Kernel) -> Floats:
@@ -69,7 +71,7 @@ def stretched_derivatives(joined: Floats, law: AsperityLaw, v: Floats, kernel: K
     # rounding must not carry the first node beyond the fold
     low = np.maximum(-stretch - law.join, -law.detach)
     edges = np.linspace(low, -law.join, 2 + int(limit / PANEL), axis=1)
-    rule = law.nodes(edges[:, :-1], edges[:, 1:], *gauss_rule(STRETCHED))
+    rule = law.nodes(edges[:, :-1], edges[:, 1:], *gauss_rule(STRETCHED_NODES))
     delta, weight = (numbers.reshape(len(v), -1) for numbers in rule)
     return _integrals(joined, (-law.join, limit), stretch[:, None] + delta, weight, kernel)
 
@@ -91,32 +93,32 @@ def _integrals(
     low, length = reach
     panels = math.ceil(length / PANEL)
     panel = length / panels
-    place = (offset - low) / panel
-    which = np.clip(place.astype(int), 0, panels - 1)
+    position = (offset - low) / panel
+    which = np.clip(position.astype(int), 0, panels - 1)
     result = np.zeros((4, len(knots), len(offset)))
     for k in range(panels):
         inside = which == k
-        weights = _at_places(np.where(inside, place - k, 0.0), np.where(inside, weight, 0.0))
-        result += kernel_at(kernel, knots[:, None] + (low + panel * (k + _places()))) @ weights.T
+        weights = _weights_at_nodes(np.where(inside, position - k, 0.0), np.where(inside, weight, 0.0))
+        result += kernel_at(kernel, knots[:, None] + (low + panel * (k + _panel_nodes()))) @ weights.T
     return result
 
 
 @cache
-def _places() -> Floats:
+def _panel_nodes() -> Floats:
     """Chebyshev nodes of a panel, as parts of it."""
-    return np.asarray(0.5 * (np.polynomial.chebyshev.chebpts1(PLACES) + 1.0))
+    return np.asarray(0.5 * (np.polynomial.chebyshev.chebpts1(PANEL_NODES) + 1.0))
 
 
 @cache
-def _to_places() -> Floats:
+def _values_to_nodes() -> Floats:
     """Matrix from integrals of Chebyshev polynomials to weights at the nodes."""
-    terms = np.polynomial.chebyshev.chebvander(2.0 * _places() - 1.0, PLACES - 1)
+    terms = np.polynomial.chebyshev.chebvander(2.0 * _panel_nodes() - 1.0, PANEL_NODES - 1)
     terms[:, 0] *= 0.5
-    return np.asarray(terms.T * (2.0 / PLACES))
+    return np.asarray(terms.T * (2.0 / PANEL_NODES))
 
 
-def _at_places(part: Floats, weight: Floats) -> Floats:
-    """Weights at a panel's `_places` that do for any smooth function what other weights do elsewhere in the panel.
+def _weights_at_nodes(part: Floats, weight: Floats) -> Floats:
+    """Weights at a panel's `_panel_nodes` that do for any smooth function what other weights do elsewhere in the panel.
 
     Parameters
     ----------
@@ -127,5 +129,5 @@ def _at_places(part: Floats, weight: Floats) -> Floats:
     -------
     ndarray, shape (m, PLACES)
     """
-    terms = np.polynomial.chebyshev.chebvander(2.0 * part - 1.0, PLACES - 1)
-    return np.asarray((weight[:, None, :] @ terms)[:, 0] @ _to_places())
+    terms = np.polynomial.chebyshev.chebvander(2.0 * part - 1.0, PANEL_NODES - 1)
+    return np.asarray((weight[:, None, :] @ terms)[:, 0] @ _values_to_nodes())

@@ -34,8 +34,8 @@ class _Lanes:
 
     def power(self, power: int) -> Any:
         """Coefficients of a power."""
-        place = self._builder.add(self._start, ir.Constant(self._start.type, LANES * power))
-        address = cgutils.gep_inbounds(self._builder, self._data, place)  # type: ignore[no-untyped-call]
+        index = self._builder.add(self._start, ir.Constant(self._start.type, LANES * power))
+        address = cgutils.gep_inbounds(self._builder, self._data, index)  # type: ignore[no-untyped-call]
         return self._builder.load(self._builder.bitcast(address, self._vector.as_pointer()), align=8)
 
     def line(self, low: Any, high: Any, by: Any) -> Any:
@@ -81,7 +81,7 @@ def _eight(context: Any, builder: Any, kind: Any, array: Any, start: Any) -> Any
     return builder.bitcast(address, ir.VectorType(ir.DoubleType(), LANES).as_pointer())
 
 
-def _add_lanes(typing: Any, out: Any, place: Any, numbers: Any, start: Any, factor: Any) -> Any:
+def _add_lanes(typing: Any, out: Any, index: Any, numbers: Any, start: Any, factor: Any) -> Any:
     """Type and code of `add_lanes`."""
 
     def evaluate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
@@ -96,10 +96,10 @@ def _add_lanes(typing: Any, out: Any, place: Any, numbers: Any, start: Any, fact
 
 
 add_lanes: Any = intrinsic(_add_lanes)
-"""Add eight numbers from ``start`` on, times a factor, to those of another array from ``place`` on."""
+"""Add eight numbers from ``start`` on, times a factor, to those of another array from ``index`` on."""
 
 
-def _product_of_lanes(typing: Any, numbers: Any, place: Any, other: Any, start: Any) -> Any:
+def _product_of_lanes(typing: Any, numbers: Any, index: Any, other: Any, start: Any) -> Any:
     """Type and code of `product_of_lanes`."""
 
     def evaluate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
@@ -120,11 +120,11 @@ def _product_of_lanes(typing: Any, numbers: Any, place: Any, other: Any, start: 
 
 
 product_of_lanes: Any = intrinsic(_product_of_lanes)
-"""Scalar product of eight numbers from ``place`` on and eight of another array from ``start`` on."""
+"""Scalar product of eight numbers from ``index`` on and eight of another array from ``start`` on."""
 
 
 def _sum_rows(
-    typing: Any, out: Any, place: Any, rows: Any, start: Any, stride: Any, factors: Any, count: Any
+    typing: Any, out: Any, index: Any, rows: Any, start: Any, stride: Any, factors: Any, count: Any
 ) -> Any:
     """Type and code of `sum_rows`."""
 
@@ -147,4 +147,4 @@ def _sum_rows(
 
 
 sum_rows: Any = intrinsic(_sum_rows)
-"""Set eight numbers from ``place`` on to a sum over rows of a matrix times factors; its first begins at ``start``."""
+"""Set eight numbers from ``index`` on to a sum over rows of a matrix times factors; its first begins at ``start``."""

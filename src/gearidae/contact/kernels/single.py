@@ -75,16 +75,16 @@ def _piece(table: Floats, at: int, displacement: float) -> tuple[float, int, flo
     below = int(table[at + A_BELOW])
     if above >= 0.0 or below == 0:
         w = math.sqrt(max(above, 0.0))
-        place = PER_UNIT * math.log1p(w / NEAR)
+        position = PER_UNIT * math.log1p(w / NEAR)
         count = int(table[at + A_COUNT])
-        if place >= count:
+        if position >= count:
             return w, below + count - 1, 1.0, 0.0
-        j = int(place)
-        return w, below + j, 2.0 * (place - j) - 1.0, 2.0 * PER_UNIT / (NEAR + w)
+        j = int(position)
+        return w, below + j, 2.0 * (position - j) - 1.0, 2.0 * PER_UNIT / (NEAR + w)
     w = math.sqrt(max(displacement - table[at + A_FOLD], 0.0))
-    place = w * table[at + A_SCALE]
-    j = min(int(place), below - 1)
-    return w, j, 2.0 * (place - j) - 1.0, 2.0 * table[at + A_SCALE]
+    position = w * table[at + A_SCALE]
+    j = min(int(position), below - 1)
+    return w, j, 2.0 * (position - j) - 1.0, 2.0 * table[at + A_SCALE]
 
 
 @compiled(inline=True)

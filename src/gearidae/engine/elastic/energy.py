@@ -26,12 +26,11 @@ from gearidae.contact.history import joined_height
 from gearidae.contact.kernels.energy import stretched_energy
 from gearidae.contact.kernels.law import loading_value
 from gearidae.engine.compiling import ELASTIC
-from gearidae.engine.elastic.nodes import farthest_joined, force_of_nodes, pressure_shares
-from gearidae.engine.elastic.rows import (
+from gearidae.engine.elastic.node_rows import (
     ADHERED_ENERGY,
+    GAP_SHARE,
     JOINED,
     PRESSURE,
-    SHARE,
     first_unknown,
     influence_powers,
     node_profile,
@@ -41,6 +40,7 @@ from gearidae.engine.elastic.rows import (
     row,
     to_points,
 )
+from gearidae.engine.elastic.nodes import farthest_joined, force_of_nodes, pressure_shares
 from gearidae.engine.model.state import MATERIALS, Floats, Model
 from gearidae.engine.pairs.coverage import Shares, noted_shares, potential_of, potentials_of
 
@@ -98,7 +98,12 @@ def nodes_energies(m: Model, k: int, y: Floats, gap: float) -> tuple[Shares, Sha
     It is the slope of a pair's energy in the material's share, at fixed gap and length: by symmetry of the influence
     coefficients what changes of the deflections leaves the energy as it is.
     """
-    first, profile, weights, share = first_unknown(m, k), node_profile(m), node_weights(m), row(m, k, SHARE)
+    first, profile, weights, share = (
+        first_unknown(m, k),
+        node_profile(m),
+        node_weights(m),
+        row(m, k, GAP_SHARE),
+    )
     a = b = c = a1 = b1 = c1 = 0.0
     for i in range(m.scene.nodes):
         potentials, pushes = potentials_of(m, gap + profile[i] + y[first + i])
@@ -142,19 +147,19 @@ def nodes_length_force(
     moved = np.empty(n)
     pressure_shares(m, k, moved)
     x = (length - m.scene.length_middle) / m.scene.length_half_range
-    bend = np.zeros(n)  # of the deflections with the length
+    by_length = np.zeros(n)  # of the deflections with the length
     power = 1.0
     for order in range(1, orders):
         for j in range(n):
             p = order * power * pressure[j]
             for i in range(n):
-                bend[i] += kappa[order, j, i] * p
+                by_length[i] += kappa[order, j, i] * p
         power *= x
     push = bodies = change = 0.0
     for i in range(n):
         push += weights[i] * pressure[i]
-        bodies += weights[i] * pressure[i] * bend[i]
-        change += 2.0 * weights[i] * bend[i] * moved[i]
+        bodies += weights[i] * pressure[i] * by_length[i]
+        change += 2.0 * weights[i] * by_length[i] * moved[i]
     scale = 0.5 * length / m.scene.length_half_range
     return energy - scale * bodies, -(push + scale * change) * rate
 

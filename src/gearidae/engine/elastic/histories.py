@@ -8,11 +8,11 @@ from gearidae.compiled import compiled, compiled_once
 from gearidae.contact.history import joined_height
 from gearidae.contact.kernels.law import loading_value
 from gearidae.engine.compiling import ELASTIC
-from gearidae.engine.elastic.rows import (
+from gearidae.engine.elastic.node_rows import (
     ADHERED_ENERGY,
     GAP,
+    GAP_SHARE,
     JOINED,
-    SHARE,
     first_unknown,
     node_profile,
     point_gaps,
@@ -28,7 +28,7 @@ _LARGEST_SHARE = 4.0
 @compiled_once(ELASTIC, makes_arrays=True)
 def init_nodes(m: Model, k: int, y: Floats, gap: float) -> None:
     """Start the histories along a contact: nothing is joined yet."""
-    first, profile, before, share = first_unknown(m, k), node_profile(m), row(m, k, GAP), row(m, k, SHARE)
+    first, profile, before, share = first_unknown(m, k), node_profile(m), row(m, k, GAP), row(m, k, GAP_SHARE)
     for i in range(m.scene.nodes):
         before[i] = gap + profile[i] + y[first + i]
         share[i] = 1.0
@@ -41,7 +41,7 @@ def init_nodes(m: Model, k: int, y: Floats, gap: float) -> None:
 @compiled_once(ELASTIC, makes_arrays=True)
 def follow_nodes(m: Model, k: int, y: Floats, gap: float) -> None:
     """Note the nodes' gaps at an accepted time, before the pair's own, and how far they have moved with it."""
-    first, profile, before, share = first_unknown(m, k), node_profile(m), row(m, k, GAP), row(m, k, SHARE)
+    first, profile, before, share = first_unknown(m, k), node_profile(m), row(m, k, GAP), row(m, k, GAP_SHARE)
     moved = gap - m.state.history[k].gap
     for i in range(m.scene.nodes):
         h = gap + profile[i] + y[first + i]

@@ -12,13 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.engine.elastic.histories import accumulate_points
-from gearidae.engine.elastic.rows import (
+from gearidae.engine.elastic.node_rows import (
     ADHERED_ENERGY,
     GAP,
+    GAP_SHARE,
     JOINED,
     NODE_ROWS,
     PRESSURE,
-    SHARE,
     STIFFNESS,
 )
 from gearidae.engine.model.state import EMPTY, MATERIALS, Floats, Model
@@ -26,7 +26,7 @@ from gearidae.engine.model.state import EMPTY, MATERIALS, Floats, Model
 KEPT_ROWS: Final = ("gap", "share", "joined")
 """Names of the kept rows, part of a checkpoint's layout."""
 
-assert (GAP, SHARE, PRESSURE) == (0, 1, 2)  # what is kept lies together, of the nodes and of the points
+assert (GAP, GAP_SHARE, PRESSURE) == (0, 1, 2)  # what is kept lies together, of the nodes and of the points
 assert STIFFNESS == JOINED + MATERIALS < ADHERED_ENERGY
 
 

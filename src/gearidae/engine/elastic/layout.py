@@ -20,7 +20,7 @@ from gearidae.asperities.tip import asperity_of, contact_modulus
 from gearidae.compiled import compiled
 from gearidae.contact.bulk import LineGrid, between_nodes, line_grid, place_nodes
 from gearidae.contact.kernels.law import GAP_HIGH, GAP_LOW, law_value, loading_table
-from gearidae.engine.elastic.rows import FINER, point_count
+from gearidae.engine.elastic.node_rows import FINER, point_count
 from gearidae.scene import Material, Scene
 
 NODES = 12
@@ -40,8 +40,8 @@ ORDERS = 6
 RIGID_DEFLECTION = 0.02
 """Deflection in the middle, in roughnesses, below which the asperity model is taken to be enough: the asperities'
 force at the same gap is then at most about 5 % too large."""
-_FAR = 10.0  # roughnesses from which a static curve is followed, and how
-_STEP = 0.25
+_FIRST_GAP = 10.0  # roughnesses from which a static curve is followed, and how
+_GAP_STEP = 0.25
 _TRIES = 25
 _SETTLED = 1e-9
 
@@ -125,11 +125,11 @@ def node_grid(
     orders = ORDERS if bounds.longest > bounds.shortest else 1
     middle = 0.5 * (bounds.longest + bounds.shortest)
     half = 0.5 * (bounds.longest - bounds.shortest) or 1.0
-    places = np.polynomial.chebyshev.chebpts1(orders)
+    nodes_of_length = np.polynomial.chebyshev.chebpts1(orders)
     x, weights = place_nodes(reach / unit, nodes)
-    influence = [_influence(scene, bounds, middle + half * p, deepest, nodes).T for p in places]
+    influence = [_influence(scene, bounds, middle + half * p, deepest, nodes).T for p in nodes_of_length]
     values = np.stack(influence) * force_unit
-    powers = np.tensordot(np.linalg.inv(np.vander(places, increasing=True)), values, axes=1)
+    powers = np.tensordot(np.linalg.inv(np.vander(nodes_of_length, increasing=True)), values, axes=1)
     finer, finer_weights = place_nodes(reach / unit, point_count(nodes))
     between = between_nodes(nodes, FINER)
     body = [x**2, weights, powers.ravel(), finer**2, finer_weights, between.ravel()]
@@ -196,7 +196,7 @@ def _followed(scene: Scene, bounds: ContactBounds, depth: float) -> float:
     surfaces, n = _laws(scene, bounds, scene.materials()), NODES
     deflection = np.zeros(n)
     work = last = 0.0
-    for gap in np.arange(_FAR, -depth - 0.5 * _STEP, -_STEP):
+    for gap in np.arange(_FIRST_GAP, -depth - 0.5 * _GAP_STEP, -_GAP_STEP):
         change = math.inf
         for _ in range(_TRIES):
             pressure, slope = np.zeros(n), np.zeros(n)
@@ -210,15 +210,15 @@ def _followed(scene: Scene, bounds: ContactBounds, depth: float) -> float:
             except (
                 np.linalg.LinAlgError
             ):  # stiffness of bodies and adhesion just cancel: that is where it folds
-                return float(gap) + _STEP
+                return float(gap) + _GAP_STEP
             deflection = deflection - step
             change = float(np.max(np.abs(step)))
             if change < _SETTLED:
                 break
         if not change < _SETTLED or np.linalg.det(matrix) <= 0.0:
-            return float(gap) + _STEP
+            return float(gap) + _GAP_STEP
         force = float(bounds.longest * weights @ pressure)
-        work += 0.5 * (force + last) * _STEP * scene.surface.roughness
+        work += 0.5 * (force + last) * _GAP_STEP * scene.surface.roughness
         last = force
         if work > bounds.energy and force > bounds.load:
             return float(gap)

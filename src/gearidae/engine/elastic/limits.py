@@ -6,8 +6,14 @@ import numpy as np
 
 from gearidae.compiled import compiled_once
 from gearidae.engine.compiling import ELASTIC
+from gearidae.engine.elastic.node_rows import (
+    first_unknown,
+    node_profile,
+    node_weights,
+    point_weights,
+    to_points,
+)
 from gearidae.engine.elastic.nodes import add_stretched, is_stretched
-from gearidae.engine.elastic.rows import first_unknown, node_profile, node_weights, point_weights, to_points
 from gearidae.engine.model.state import Floats, Model
 from gearidae.engine.pairs.coverage import limit_of_loading, noted_shares
 from gearidae.engine.pairs.tooth_pairs import PairState

@@ -20,8 +20,7 @@ import numpy as np
 
 from gearidae.compiled import compiled
 from gearidae.contact.kernels.lanes import LANES, add_lanes, sum_rows
-from gearidae.engine.elastic.nodes import weighed_stiffness
-from gearidae.engine.elastic.rows import (
+from gearidae.engine.elastic.node_rows import (
     MATRICES,
     PRESSURE,
     first_unknown,
@@ -30,10 +29,11 @@ from gearidae.engine.elastic.rows import (
     row,
     scratch,
 )
+from gearidae.engine.elastic.nodes import weighed_stiffness
 from gearidae.engine.model.state import Floats, Model
 
-STEP: Final = 0  # vectors in the scratch space: the step, in the end, to be taken off the deflections,
-FOLLOW: Final = 1  # slopes of the deflections in the pair's gap,
+NEWTON_STEP: Final = 0  # vectors in the scratch space: the step, in the end, to be taken off the deflections,
+DEFLECTION_SLOPE: Final = 1  # slopes of the deflections in the pair's gap,
 SUMS: Final = 2  # slopes of the nodes' loads in the pair's gap,
 _LOADS: Final = 3  # and loads and a term of the series
 _TERM: Final = 4
@@ -82,7 +82,11 @@ def newton_step(m: Model, k: int, y: Floats) -> bool:
     """
     n, first, pressure, weights = m.scene.nodes, first_unknown(m, k), row(m, k, PRESSURE), node_weights(m)
     width = padded(n)
-    step, follow, sums = equation_space(m, STEP), equation_space(m, FOLLOW), equation_space(m, SUMS)
+    step, follow, sums = (
+        equation_space(m, NEWTON_STEP),
+        equation_space(m, DEFLECTION_SLOPE),
+        equation_space(m, SUMS),
+    )
     loads, slopes, kappa = (
         equation_space(m, _LOADS),
         equation_space(m, _SLOPES),

@@ -44,12 +44,12 @@ from gearidae.contact.kernels.law import (
     stretched_value,
 )
 from gearidae.engine.compiling import ELASTIC
-from gearidae.engine.elastic.rows import (
+from gearidae.engine.elastic.node_rows import (
+    GAP_SHARE,
     POINT_ADDED,
     POINT_GAPS,
     POINT_TURNS,
     PRESSURE,
-    SHARE,
     SLOPE,
     STIFFNESS,
     add_to_nodes,
@@ -189,7 +189,7 @@ def add_stretched(
     point_gaps(m, k, y, gap, gaps)
     if turned:
         back = extreme_gap(t - m.state.time, h.gap, h.gap_rate, gap, rate) - gap
-        to_points(m, row(m, k, SHARE), turning)
+        to_points(m, row(m, k, GAP_SHARE), turning)
         for i in range(points):
             turning[i] = gaps[i] + turning[i] * back
     way = _TURNED if turned else _OPENING if opening else _CLOSING
@@ -238,8 +238,8 @@ def _add_material(
 @compiled
 def point_branch(m: Model, k: int, material: int, point: int) -> int:
     """Index of the branch of stretched asperities at a point, among the rows; it knows the joined height it is of."""
-    place = (k * MATERIALS + material) * m.scene.points + point
-    return m.scene.point_branches_at + place * m.scene.point_branch_length
+    index = (k * MATERIALS + material) * m.scene.points + point
+    return m.scene.point_branches_at + index * m.scene.point_branch_length
 
 
 @compiled(makes_arrays=True)
@@ -283,8 +283,8 @@ def weighed_stiffness(m: Model, k: int, out: Floats, width: int) -> None:
         if stiffness != 0.0:
             first, at = first_node(point, n), STENCIL * point
             for i in range(STENCIL):
-                place = np.uintp((first + i) * width + first)
-                add_lanes(out, place, shares, np.uintp(at), shares[at + i] * stiffness)
+                index = np.uintp((first + i) * width + first)
+                add_lanes(out, index, shares, np.uintp(at), shares[at + i] * stiffness)
     for i in range(n):
         out[(width + 1) * i] += weights[i] * slope[i]
 
@@ -292,7 +292,7 @@ def weighed_stiffness(m: Model, k: int, out: Floats, width: int) -> None:
 @compiled(makes_arrays=True)
 def pressure_shares(m: Model, k: int, out: Floats) -> None:
     """Slopes of the nodes' pressures in the pair's gap along its last motion, after `force_of_nodes`."""
-    share, slope, stiff = row(m, k, SHARE), row(m, k, SLOPE), row(m, k, STIFFNESS)
+    share, slope, stiff = row(m, k, GAP_SHARE), row(m, k, SLOPE), row(m, k, STIFFNESS)
     moved = np.empty(m.scene.points)
     to_points(m, share, moved)
     for i in range(moved.size):
@@ -351,7 +351,7 @@ def node_residual(m: Model, y: Floats, out: Floats) -> None:
 def node_rates(m: Model, yp: Floats) -> None:
     """Rates of the deflections at an accepted time, from the nodes' shares in the last motion."""
     for k in range(m.scene.histories):
-        first, share, h = first_unknown(m, k), row(m, k, SHARE), m.state.history[k]
+        first, share, h = first_unknown(m, k), row(m, k, GAP_SHARE), m.state.history[k]
         near = h.pair != EMPTY and in_reach(m, h.gap)
         for i in range(m.scene.nodes):
             yp[first + i] = (share[i] - 1.0) * h.gap_rate if near else 0.0

@@ -21,15 +21,14 @@ from typing import Final
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import ELASTIC
 from gearidae.engine.elastic.newton_step import (
-    FOLLOW,
-    STEP,
+    DEFLECTION_SLOPE,
+    NEWTON_STEP,
     SUMS,
     equation_space,
     influence_space,
     newton_step,
 )
-from gearidae.engine.elastic.nodes import force_of_nodes, influence
-from gearidae.engine.elastic.rows import (
+from gearidae.engine.elastic.node_rows import (
     BEFORE,
     BEFORE_TANGENT,
     DEFLECTION,
@@ -39,6 +38,7 @@ from gearidae.engine.elastic.rows import (
     first_unknown,
     row,
 )
+from gearidae.engine.elastic.nodes import force_of_nodes, influence
 from gearidae.engine.model.state import EMPTY, Floats, Model
 from gearidae.engine.pairs.tooth_pairs import PairState
 
@@ -103,7 +103,7 @@ def condense_pair(
     """
     n, first, settling = m.scene.nodes, first_unknown(m, k), m.work.settling[k]
     deflection, tangent = row(m, k, DEFLECTION), row(m, k, TANGENT)
-    step, follow = equation_space(m, STEP), equation_space(m, FOLLOW)
+    step, follow = equation_space(m, NEWTON_STEP), equation_space(m, DEFLECTION_SLOPE)
     sums = equation_space(m, SUMS)
     predict(m, k, known, t, y, gap, rate)
     enough = math.sqrt(LEFT * m.scene.rtol)
@@ -142,7 +142,7 @@ def following_slope(m: Model, k: int, y: Floats, length: float, follow: Floats) 
     """
     influence(m, length, influence_space(m))
     newton_step(m, k, y)
-    slopes, sums, more = equation_space(m, FOLLOW), equation_space(m, SUMS), 0.0
+    slopes, sums, more = equation_space(m, DEFLECTION_SLOPE), equation_space(m, SUMS), 0.0
     for i in range(m.scene.nodes):
         follow[i] = slopes[i]
         more += sums[i] * slopes[i]
@@ -200,5 +200,5 @@ def predict(m: Model, k: int, known: bool, t: float, y: Floats, gap: float, rate
     back, x = settling.before_gap - settling.last_gap, ahead / span
     for i in range(n):
         rise = before[i] - last[i] - last_tangent[i] * back
-        bend = span * settling.before_rate * (before_tangent[i] - last_tangent[i])
-        y[first + i] += ((bend + 3.0 * rise) + (bend + 2.0 * rise) * x) * x * x
+        tangent_change = span * settling.before_rate * (before_tangent[i] - last_tangent[i])
+        y[first + i] += ((tangent_change + 3.0 * rise) + (tangent_change + 2.0 * rise) * x) * x * x

@@ -41,38 +41,38 @@ SWITCHES_HIGH: Final = EVENTS_AT_ONCE // 2
 """Events of asperities at one time, which are too many to follow."""
 CYCLE_HIGH: Final = 100_000
 """Events of asperities from one mesh mark to the next, beyond which they are too many to follow."""
-FAR: Final = 1.0
+NO_CANDIDATE: Final = 1.0
 """Guard over the roughness beyond which it does not matter how far it is."""
 
 
 @compiled_once(POPULATION)
 def asperity_guard(m: Model, y: Floats) -> float:
-    """Least guard of all candidates of the pairs that are near, `FAR` at most; chooses candidates where it must."""
-    least = FAR
+    """Least guard of all candidates of the pairs near, `NO_CANDIDATE` at most; chooses candidates where it must."""
+    least = NO_CANDIDATE
     for i in range(list_known(m, y)):
         k = m.work.known[i]
         now = pair_of(m, k, y)
-        if not covers(m, k, now.gap, now.place):
-            contact, gap, low, high = m.work.contact[k], now.gap, now.place, now.place
+        if not covers(m, k, now.gap, now.position):
+            contact, gap, low, high = m.work.contact[k], now.gap, now.position, now.position
             if contact.started != 0:
                 gap, low, high = (
                     min(gap, contact.start_gap),
-                    min(low, contact.start_place),
-                    max(high, contact.start_place),
+                    min(low, contact.start_position),
+                    max(high, contact.start_position),
                 )
-            choose(m, k, now.coast, now.number, gap, low, high)
-        at = spot_at(m, now.place, now.moves)
-        bend = 0.5 * m.scene.population.steepness / at.radius
+            choose(m, k, now.flank, now.number, gap, low, high)
+        at = spot_at(m, now.position, now.moves)
+        half_curvature = 0.5 * m.scene.population.steepness / at.radius
         for j in range(m.work.contact[k].count):
-            least = min(least, _guard(m, k, j, now, at.arc, bend))
+            least = min(least, _guard(m, k, j, now, at.arc, half_curvature))
     return least
 
 
 @compiled(inline=True)
-def _guard(m: Model, k: int, j: int, now: PairState, arc: float, bend: float) -> float:
+def _guard(m: Model, k: int, j: int, now: PairState, arc: float, half_curvature: float) -> float:
     """Guard of a candidate of the k-th history."""
     x = m.rows[column(m, k, ARC) + j] - arc
-    overlap = m.rows[column(m, k, HEIGHT) + j] - now.gap - bend * x * x
+    overlap = m.rows[column(m, k, HEIGHT) + j] - now.gap - half_curvature * x * x
     return m.rows[column(m, k, SIGN) + j] * (overlap + m.rows[column(m, k, BOUND) + j])
 
 
@@ -98,10 +98,10 @@ def switch_asperities(m: Model, y: Floats) -> bool:
         if contact.count == 0:
             continue
         now, switched = pair_of(m, k, y), column(m, k, REMEMBERED)
-        at = spot_at(m, now.place, now.moves)
-        bend = 0.5 * m.scene.population.steepness / at.radius
+        at = spot_at(m, now.position, now.moves)
+        half_curvature = 0.5 * m.scene.population.steepness / at.radius
         for j in range(contact.count):
-            guard = _guard(m, k, j, now, at.arc, bend)
+            guard = _guard(m, k, j, now, at.arc, half_curvature)
             if guard < 0.0:
                 _switch(m, k, j, guard)
                 m.rows[switched + contact.asperity_switches] = j
@@ -124,11 +124,11 @@ def _switch(m: Model, k: int, j: int, guard: float) -> None:
     else:
         m.state.energy.adhesion_loss += energy
         m.state.asperity_detachments += 1
-    _turn(m, k, j)
+    _switch_state(m, k, j)
 
 
 @compiled
-def _turn(m: Model, k: int, j: int) -> None:
+def _switch_state(m: Model, k: int, j: int) -> None:
     """Make a free candidate a joined one, or the other way round."""
     sign, kind = column(m, k, SIGN) + j, int(m.rows[column(m, k, KIND) + j])
     m.rows[sign] = -m.rows[sign]
@@ -158,23 +158,23 @@ def record_switches(m: Model, t: float, y: Floats, events: Floats, count: int) -
     asperity_switches = 0
     for k in range(m.scene.histories):
         contact, h = m.work.contact[k], m.state.history[k]
-        coast = flank_of_history(m, k)
+        flank = flank_of_history(m, k)
         for i in range(contact.asperity_switches):
             asperity_switches += 1
             if m.scene.population.quiet == 0 and asperity_switches < SWITCHES_HIGH:
                 j = int(m.rows[column(m, k, REMEMBERED) + i])
                 kind = _ONSET if m.rows[column(m, k, SIGN) + j] > 0.0 else _DETACHMENT
                 asperity = m.rows[column(m, k, INDEX) + j]
-                asperity -= m.tables[m.scene.population.starts_at + flank_of(m, coast, h.pair)]
-                count = record_asperity(m, events, count, (t, kind, h.pair, coast, h.gap_rate), asperity)
+                asperity -= m.tables[m.scene.population.starts_at + flank_of(m, flank, h.pair)]
+                count = record_asperity(m, events, count, (t, kind, h.pair, flank, h.gap_rate), asperity)
         if contact.asperity_switches > 0 and (contact.joined > 0) != (h.in_contact != 0):
             h.in_contact = 1 - h.in_contact
             kind = _PAIR_ONSET if h.in_contact != 0 else _PAIR_SEPARATION
-            count = record_contact(m, y, events, count, (t, kind, h.pair, coast, h.gap_rate))
+            count = record_contact(m, y, events, count, (t, kind, h.pair, flank, h.gap_rate))
             if h.in_contact != 0:
-                if m.state.last_flank == 1 - coast:
-                    count = record(m, events, count, t, _FLANK_CHANGE, h.pair, coast, h.gap_rate)
-                m.state.last_flank = coast
+                if m.state.last_flank == 1 - flank:
+                    count = record(m, events, count, t, _FLANK_CHANGE, h.pair, flank, h.gap_rate)
+                m.state.last_flank = flank
         contact.asperity_switches = 0
     return count, asperity_switches >= SWITCHES_HIGH or m.state.cycle_events > CYCLE_HIGH
 
@@ -185,12 +185,12 @@ def join_at_start(m: Model, y: Floats) -> None:
     for i in range(list_known(m, y)):
         k = m.work.known[i]
         now = pair_of(m, k, y)
-        choose(m, k, now.coast, now.number, now.gap, now.place, now.place)
-        at = spot_at(m, now.place, now.moves)
-        bend = 0.5 * m.scene.population.steepness / at.radius
+        choose(m, k, now.flank, now.number, now.gap, now.position, now.position)
+        at = spot_at(m, now.position, now.moves)
+        half_curvature = 0.5 * m.scene.population.steepness / at.radius
         for j in range(m.work.contact[k].count):
-            if _guard(m, k, j, now, at.arc, bend) < 0.0:
-                _turn(m, k, j)
+            if _guard(m, k, j, now, at.arc, half_curvature) < 0.0:
+                _switch_state(m, k, j)
         list_joined(m, k)
         m.state.history[k].in_contact = 1 if m.work.contact[k].joined > 0 else 0
 
@@ -204,7 +204,7 @@ def note_step_start(m: Model, y: Floats) -> None:
         contact, now = m.work.contact[m.work.known[i]], pair_of(m, m.work.known[i], y)
         contact.started, contact.start_moves = 1, 1 if now.moves else 0
         contact.start_gap, contact.start_rate = now.gap, now.rate
-        contact.start_place, contact.start_place_rate = now.place, now.place_rate
+        contact.start_position, contact.start_position_rate = now.position, now.position_rate
 
 
 @compiled_once(POPULATION)
@@ -231,15 +231,15 @@ def first_grazing_minimum(m: Model, y: Floats, h: float) -> float:
             continue
         now = pair_of(m, k, y)
         before = PairState(
-            now.coast,
+            now.flank,
             now.number,
             k,
             True,
             contact.start_gap,
             contact.start_rate,
             0.0,
-            contact.start_place,
-            contact.start_place_rate,
+            contact.start_position,
+            contact.start_position_rate,
             contact.start_moves != 0,
         )
         first = min(first, _first_dip_of(m, k, before, now, h))
@@ -250,7 +250,7 @@ def first_grazing_minimum(m: Model, y: Floats, h: float) -> float:
 def _first_dip_of(m: Model, k: int, before: PairState, now: PairState, h: float) -> float:
     """Earliest dip of the candidates of a pair between two states; 2 if there is none."""
     first = 2.0
-    at0, at1 = spot_at(m, before.place, before.moves), spot_at(m, now.place, now.moves)
+    at0, at1 = spot_at(m, before.position, before.moves), spot_at(m, now.position, now.moves)
     bend0, bend1 = (
         0.5 * m.scene.population.steepness / at0.radius,
         0.5 * m.scene.population.steepness / at1.radius,
@@ -258,8 +258,8 @@ def _first_dip_of(m: Model, k: int, before: PairState, now: PairState, h: float)
     for j in range(m.work.contact[k].count):
         g0, g1 = _guard(m, k, j, before, at0.arc, bend0), _guard(m, k, j, now, at1.arc, bend1)
         arc, sign = m.rows[column(m, k, ARC) + j], m.rows[column(m, k, SIGN) + j]
-        d0 = overlap_slopes(m, at0, arc - at0.arc)[0] * before.place_rate
-        d1 = overlap_slopes(m, at1, arc - at1.arc)[0] * now.place_rate
+        d0 = overlap_slopes(m, at0, arc - at0.arc)[0] * before.position_rate
+        d1 = overlap_slopes(m, at1, arc - at1.arc)[0] * now.position_rate
         r0, r1 = h * sign * (d0 - before.rate), h * sign * (d1 - now.rate)
         if g0 > 0.0 and g1 > 0.0 and r0 < 0.0 < r1:
             share, least = _lowest(g0, g1, r0, r1)

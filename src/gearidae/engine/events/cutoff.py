@@ -38,9 +38,9 @@ def cutoff_guard(m: Model, y: Floats) -> float:
         if m.work.within[k] != 0.0:
             least = min(least, m.scene.cutoff - _gap(m, k, y))
     for i in range(reach.total):
-        coast, number = pair_at(reach, i)
-        if not was_within(m, history_of(m, coast, number), number):
-            least = min(least, gap_and_rate(m, coast, number, y)[0] - m.scene.cutoff)
+        flank, number = pair_at(reach, i)
+        if not was_within(m, history_of(m, flank, number), number):
+            least = min(least, gap_and_rate(m, flank, number, y)[0] - m.scene.cutoff)
     return least
 
 
@@ -52,9 +52,9 @@ def note_within(m: Model, y: Floats) -> bool:
         if m.work.within[k] != 0.0 and not in_reach(m, _gap(m, k, y)):
             m.work.within[k], changed = 0.0, True
     for i in range(reach.total):
-        coast, number = pair_at(reach, i)
-        k = history_of(m, coast, number)
-        if not was_within(m, k, number) and in_reach(m, gap_and_rate(m, coast, number, y)[0]):
+        flank, number = pair_at(reach, i)
+        k = history_of(m, flank, number)
+        if not was_within(m, k, number) and in_reach(m, gap_and_rate(m, flank, number, y)[0]):
             m.work.within[k], changed = number + 0.5, True
     return changed
 

@@ -38,7 +38,7 @@ LIGHT_EXITS = 4
 STOP, ROOT = 1, 2
 """IDA's flags for a stop and for a root."""
 
-_TINY: Final = 1e-300
+_ABOVE_ZERO: Final = 1e-300
 
 
 @compiled(inline=True)
@@ -53,13 +53,13 @@ def guard(m: Model, t: float, y: Floats) -> float:
     least = mesh_guard(m, t, y)
     if m.scene.stop != 0:
         least = min(least, stop_guard(m, t, y))
-    if m.scene.friction.on != 0:
+    if m.scene.friction.any_dry != 0:
         least = min(least, dry_guard(m, t, y))
     if m.scene.guarded != 0:
         least = min(least, shaft_guard(m, y))
     # a guard that stays at exactly zero just after its root would be an error to the root finder; zero counts as
     # not yet fallen
-    return least if least != 0.0 else _TINY
+    return least if least != 0.0 else _ABOVE_ZERO
 
 
 @compiled(inline=True)

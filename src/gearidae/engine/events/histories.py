@@ -32,17 +32,17 @@ def accept(m: Model, t: float, y: Floats) -> None:
     """Follow the histories to an accepted time; beyond the cut-off nothing is joined and nothing is remembered."""
     m.state.time = t
     follow_orbit(m, t)
-    for coast in range(2):
-        if in_reach(m, nearest_gap(m, coast, y)):
-            m.state.flank_in_reach[coast] = 1
-        elif m.state.flank_in_reach[coast] != 0:
-            clear_history(m, coast)
+    for flank in range(2):
+        if in_reach(m, nearest_gap(m, flank, y)):
+            m.state.flank_in_reach[flank] = 1
+        elif m.state.flank_in_reach[flank] != 0:
+            clear_history(m, flank)
     reach = pairs_touching(m, y)
     for i in range(reach.total):
-        coast, pair = pair_at(reach, i)
-        k = history_of(m, coast, pair)
+        flank, pair = pair_at(reach, i)
+        k = history_of(m, flank, pair)
         h = m.state.history[k]
-        gap, rate = gap_and_rate(m, coast, pair, y)
+        gap, rate = gap_and_rate(m, flank, pair, y)
         if h.pair != pair or not in_reach(m, gap):
             init_history(m, k, pair, gap, middle_gap(m, k, y, gap))
             if m.scene.nodes > 0:
@@ -59,13 +59,13 @@ def accept(m: Model, t: float, y: Floats) -> None:
 
 
 @compiled
-def clear_history(m: Model, coast: int) -> None:
+def clear_history(m: Model, flank: int) -> None:
     """Empty a flank's histories: none of its pairs is near."""
-    m.state.flank_in_reach[coast] = 0
+    m.state.flank_in_reach[flank] = 0
     for k in range(m.scene.slots):
-        m.state.history[coast * m.scene.slots + k].pair = EMPTY
-        m.state.history[coast * m.scene.slots + k].lag = 0.0
-        forget(m, coast * m.scene.slots + k)
+        m.state.history[flank * m.scene.slots + k].pair = EMPTY
+        m.state.history[flank * m.scene.slots + k].adhesion_lag = 0.0
+        forget(m, flank * m.scene.slots + k)
 
 
 @compiled
@@ -85,17 +85,17 @@ def init_history(m: Model, k: int, pair: int, gap: float, middle: float) -> None
         if not in_reach(m, gap):
             h.adhered_energy[material] = 0.0
         h.at_pull_off[material] = 0
-    h.direction = h.lag = h.lag_power = h.lag_rate = 0.0
+    h.direction = h.adhesion_lag = h.adhesion_lag_power = h.adhesion_lag_power_rate = 0.0
     h.slide = 0
     m.work.exposing.pair[k].known = 0
 
 
 @compiled(makes_arrays=True)
-def begin(place: int, t: float, y: Floats) -> None:
+def begin(address: int, t: float, y: Floats) -> None:
     """Set the histories and mesh marks of the model at an address for a start at `y`."""
-    m = model_at(place)
-    for coast in range(2):
-        clear_history(m, coast)
+    m = model_at(address)
+    for flank in range(2):
+        clear_history(m, flank)
     accept(m, t, y)
     set_marks(m, y[PHASE])
     if m.scene.guarded != 0:
@@ -104,5 +104,5 @@ def begin(place: int, t: float, y: Floats) -> None:
         begin_within(m, y)
     if m.scene.population.flanks != 0:
         join_at_start(m, y)
-    if m.scene.friction.on != 0:
+    if m.scene.friction.any_dry != 0:
         begin_sliding(m, t, y)

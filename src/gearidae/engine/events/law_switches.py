@@ -17,7 +17,7 @@ from gearidae.records import Flank
 
 _NO_FLANK: Final = float(Flank.NONE)
 
-SHARE: Final = 0.5
+IMPULSE_MISSED: Final = 0.5
 """Of the tolerance of a speed: impulse over the mass that a step may miss of a law that jumps in it."""
 NOTED: Final = 0.01
 """Of that, from which a jump is counted: the error test may keep the steps of a law that chatters below it."""
@@ -30,7 +30,7 @@ HOVERS: Final = 10.0
 
 A small force drives the shaft back over a jump of a large one: steps grow on the way back and shrink before the jump,
 some 40 from one to the next. A vibration that passes a jump goes farther, or is beyond what the tolerance resolves."""
-_PLACES: Final = (0.0, *sorted(k * 0.5 * (math.sqrt(5.0) - 1.0) % 1.0 for k in range(1, 13)), 1.0)
+_STEP_SHARES: Final = (0.0, *sorted(k * 0.5 * (math.sqrt(5.0) - 1.0) % 1.0 for k in range(1, 13)), 1.0)
 """Shares of a step at which the function of a law's switch is evaluated: multiples of the golden section, so that no
 wave has the same phase at all of them."""
 _SECTIONS: Final = 8
@@ -188,14 +188,14 @@ def _returns(
     """
     if m.work.law_side[shaft] == 0.0:
         return False
-    before = _distance(m, shaft, t, h, _PLACES[0], first, last)
-    here = _distance(m, shaft, t, h, _PLACES[1], first, last)
-    for i in range(1, len(_PLACES) - 1):
+    before = _distance(m, shaft, t, h, _STEP_SHARES[0], first, last)
+    here = _distance(m, shaft, t, h, _STEP_SHARES[1], first, last)
+    for i in range(1, len(_STEP_SHARES) - 1):
         if here < 0.0:
             return True
-        there = _distance(m, shaft, t, h, _PLACES[i + 1], first, last)
-        places = _PLACES[i - 1], _PLACES[i], _PLACES[i + 1]
-        if here < before and here <= there and _dips(m, shaft, t, h, places, here, first, last):
+        there = _distance(m, shaft, t, h, _STEP_SHARES[i + 1], first, last)
+        shares = _STEP_SHARES[i - 1], _STEP_SHARES[i], _STEP_SHARES[i + 1]
+        if here < before and here <= there and _dips(m, shaft, t, h, shares, here, first, last):
             return True
         before, here = here, there
     return False
@@ -207,27 +207,27 @@ def _dips(
     shaft: int,
     t: float,
     h: float,
-    places: tuple[float, float, float],
+    shares: tuple[float, float, float],
     least: float,
     first: tuple[float, float],
     last: tuple[float, float],
 ) -> bool:
     """Whether the function is beyond zero about the middle one of three times, where its distance is the least."""
-    low, middle, high = places
+    low, middle, high = shares
     for _ in range(_SECTIONS):
         further = high - middle > middle - low
         end = high if further else low
-        place = middle + _GOLDEN * (end - middle)
-        value = _distance(m, shaft, t, h, place, first, last)
+        share = middle + _GOLDEN * (end - middle)
+        value = _distance(m, shaft, t, h, share, first, last)
         if value < 0.0:
             return True
         if value < least:
             low, high = (middle, high) if further else (low, middle)
-            middle, least = place, value
+            middle, least = share, value
         elif further:
-            high = place
+            high = share
         else:
-            low = place
+            low = share
     return False
 
 
@@ -264,14 +264,14 @@ def misses_laws(m: Model, t: float, y: Floats, counts: bool) -> bool:
         if not switches:
             missed = h * law_jump(m, shaft, a.time, h, first, last) * mass
             if counts and missed > 0.0:
-                note_law_jump(m, a.time, a.state, missed > NOTED * SHARE)
-            if missed > SHARE:
+                note_law_jump(m, a.time, a.state, missed > NOTED * IMPULSE_MISSED)
+            if missed > IMPULSE_MISSED:
                 return True
         elif on_its_side(m, shaft, t, last[0], last[1]):
             if _returns(m, shaft, a.time, h, first, last):
                 return True
         else:
             jump = law_value(m, shaft, t, last[0], last[1]) - law_value(m, shaft, a.time, first[0], first[1])
-            if h * abs(jump) * mass > SHARE:
+            if h * abs(jump) * mass > IMPULSE_MISSED:
                 return True
     return False

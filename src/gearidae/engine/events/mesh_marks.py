@@ -14,12 +14,12 @@ from gearidae.records import EventKind
 _MESH_ENTRY, _MESH_EXIT = float(EventKind.MESH_ENTRY), float(EventKind.MESH_EXIT)
 MARKS: Final = 4
 """Kinds of marks in each pitch."""
-FAR: Final = 2.0**40
+NO_MARK: Final = 2.0**40
 """Phase of a mark where the mesh has none."""
 RELIEF_PER_STEP: Final = 0.25
 """How far the tip relief may open a gap in one step after a mesh mark, over the roughness: asperities part over one to
 three of it."""
-_TINY: Final = 1e-300
+_LEAST_DIVISOR: Final = 1e-300
 
 
 @compiled(inline=True)
@@ -52,7 +52,7 @@ def set_marks(m: Model, phase: float) -> None:
 
     Where the mesh has no marks both are far away, and so that no pair is on a path of contact between them.
     """
-    low, high = -FAR - 1.0, FAR
+    low, high = -NO_MARK - 1.0, NO_MARK
     for k in range(m.scene.marks):
         mark = first_mark(m, k)
         whole = math.floor(phase - mark)
@@ -75,12 +75,12 @@ def cross_mark(m: Model, t: float, y: Floats, events: Floats, count: int) -> int
         whole = math.floor(crossed - mark + 0.5)
         here = mark + whole
         if abs(crossed - here) < 1e-9:
-            coast = COAST if k >= 2 else DRIVE
+            flank = COAST if k >= 2 else DRIVE
             begins = (k == 0 or k == 3) == forward
             if k < 2 and not begins:
                 m.state.extremes.mesh_exits += 1
-            _, rate = gap_and_rate(m, coast, whole, y)
-            count = record(m, events, count, t, _MESH_ENTRY if begins else _MESH_EXIT, whole, coast, rate)
+            _, rate = gap_and_rate(m, flank, whole, y)
+            count = record(m, events, count, t, _MESH_ENTRY if begins else _MESH_EXIT, whole, flank, rate)
         else:
             here = mark + math.floor(crossed - mark)
             if not forward:
@@ -98,7 +98,7 @@ def cross_mark(m: Model, t: float, y: Floats, events: Floats, count: int) -> int
 def relief_step(m: Model, y: Floats) -> float:
     """Step in which the tip relief opens a gap by `RELIEF_PER_STEP`, from a mesh mark on, at the present speed."""
     along = math.sqrt(2.0 * RELIEF_PER_STEP / m.scene.relief_curvature)
-    return along / max(m.scene.phase_rate * abs(y[W]), _TINY)
+    return along / max(m.scene.phase_rate * abs(y[W]), _LEAST_DIVISOR)
 
 
 @compiled

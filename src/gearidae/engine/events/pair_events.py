@@ -48,7 +48,7 @@ class PairEvent(NamedTuple):
 
     Attributes
     ----------
-    coast, pair, k : int
+    flank, pair, k : int
         Flank and number of the pair, and index of its history.
     gap, rate, middle : float
         Its gap, the gap's rate, and the gap in the middle of its contact.
@@ -56,7 +56,7 @@ class PairEvent(NamedTuple):
         Whether contact has begun or ended, a material is stretched in full, and the gap has turned round.
     """
 
-    coast: int
+    flank: int
     pair: int
     k: int
     gap: float
@@ -68,9 +68,9 @@ class PairEvent(NamedTuple):
 
 
 @compiled(inline=True)
-def find_event(m: Model, y: Floats, coast: int, pair: int, k: int) -> PairEvent:
+def find_event(m: Model, y: Floats, flank: int, pair: int, k: int) -> PairEvent:
     """Say which guards of a pair have fallen at a state."""
-    gap, rate = gap_and_rate(m, coast, pair, y)
+    gap, rate = gap_and_rate(m, flank, pair, y)
     h = m.state.history[k]
     inside = gap <= m.scene.contact_gap if h.in_contact == 0 else gap < m.scene.contact_gap
     touches, stretches, turns, middle = inside != (h.in_contact != 0), False, False, gap
@@ -79,7 +79,7 @@ def find_event(m: Model, y: Floats, coast: int, pair: int, k: int) -> PairEvent:
         for material in range(MATERIALS):
             stretches |= newly_stretched(m, k, material, middle)
         turns = h.direction != 0.0 and h.direction * rate <= 0.0
-    return PairEvent(coast, pair, k, gap, rate, middle, touches, stretches, turns)
+    return PairEvent(flank, pair, k, gap, rate, middle, touches, stretches, turns)
 
 
 @compiled
@@ -96,31 +96,31 @@ def take_event(m: Model, t: float, y: Floats, event: PairEvent, events: Floats, 
     count : int
         See `gearidae.engine.events.record`.
     """
-    coast, pair, k, rate = event.coast, event.pair, event.k, event.rate
+    flank, pair, k, rate = event.flank, event.pair, event.k, event.rate
     if event.touches:
         count = _change_contact(m, t, y, event, events, count)
     for material in range(MATERIALS if event.stretches else 0):
         if newly_stretched(m, k, material, event.middle):
             m.state.history[k].at_pull_off[material] = 1
-            count = record(m, events, count, t, _FULL_STRETCH, pair, coast, rate)
+            count = record(m, events, count, t, _FULL_STRETCH, pair, flank, rate)
     if event.turns:
         _turn_round(m, y, k, event.gap, event.middle)
-        count = record(m, events, count, t, _TURNING_POINT, pair, coast, rate)
+        count = record(m, events, count, t, _TURNING_POINT, pair, flank, rate)
     return count
 
 
 @compiled
 def _change_contact(m: Model, t: float, y: Floats, event: PairEvent, events: Floats, count: int) -> int:
     """Contact onset or separation, and a change of flank with it."""
-    coast, pair, rate = event.coast, event.pair, event.rate
+    flank, pair, rate = event.flank, event.pair, event.rate
     h = m.state.history[event.k]
     h.in_contact = 1 - h.in_contact
     onset = h.in_contact != 0
-    count = record_contact(m, y, events, count, (t, _ONSET if onset else _SEPARATION, pair, coast, rate))
+    count = record_contact(m, y, events, count, (t, _ONSET if onset else _SEPARATION, pair, flank, rate))
     if onset:
-        if m.state.last_flank == 1 - coast:
-            count = record(m, events, count, t, _FLANK_CHANGE, pair, coast, rate)
-        m.state.last_flank = coast
+        if m.state.last_flank == 1 - flank:
+            count = record(m, events, count, t, _FLANK_CHANGE, pair, flank, rate)
+        m.state.last_flank = flank
     return count
 
 
@@ -136,7 +136,7 @@ def newly_stretched(m: Model, k: int, material: int, middle: float) -> bool:
 def _turn_round(m: Model, y: Floats, k: int, gap: float, middle: float) -> None:
     """Take the joined heights at a turning point of the gap; joining has lagged up to there."""
     h = m.state.history[k]
-    h.lag = h.lag_power = h.lag_rate = 0.0
+    h.adhesion_lag = h.adhesion_lag_power = h.adhesion_lag_power_rate = 0.0
     for material in range(MATERIALS):
         limit = m.scene.material[material].stretch_limit
         if limit > 0.0:

@@ -45,7 +45,7 @@ def record(
         return count
     events[count, _TIME] = t * m.scene.time_unit
     events[count, _KIND] = kind
-    events[count, _PAIR] = pair + (m.state.turns if flank >= 0.0 else 0.0)
+    events[count, _PAIR] = pair + (m.state.whole_pitches if flank >= 0.0 else 0.0)
     events[count, _FLANK] = flank
     events[count, _GAP_RATE] = rate * m.scene.length_unit / m.scene.time_unit
     events[count, _ASPERITY] = -1.0

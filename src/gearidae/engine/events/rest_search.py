@@ -85,14 +85,14 @@ def rest_until(m: Model, t: float, y: Floats, stop: float) -> tuple[float, bool]
         if _holds_throughout(m, t, to, y):
             return to, False
         period = m.scene.common_period
-        if 0.0 < FEW_PERIODS * period < to - t and period < LOOKS * m.scene.rest_look:
+        if 0.0 < FEW_PERIODS * period < to - t and period < LOOKS * m.scene.rest_search_step:
             whole = int((to - t) / period)
             first = _first_period(m, t, y, period, whole)
             if first == whole:
                 return min(t + whole * period, to), False
             begin = t + first * period
             end = begin + period
-    end = min(end, begin + LOOKS * m.scene.rest_look)
+    end = min(end, begin + LOOKS * m.scene.rest_search_step)
     moves = _first_fall(m, y, begin, end)
     return (moves, True) if moves < math.inf else (end, False)
 
@@ -134,9 +134,9 @@ def _first_period(m: Model, t: float, y: Floats, period: float, whole: int) -> i
 @compiled
 def _first_fall(m: Model, y: Floats, begin: float, end: float) -> float:
     """First time of an interval at which the margin is below zero; infinite if there is none."""
-    parts = max(math.ceil((end - begin) / m.scene.rest_look), 1)
+    parts = max(math.ceil((end - begin) / m.scene.rest_search_step), 1)
     h = (end - begin) / parts
-    drop = m.scene.rest_bend * h * h if m.scene.rest_bend < math.inf else math.inf
+    drop = m.scene.rest_margin_curvature * h * h if m.scene.rest_margin_curvature < math.inf else math.inf
     before, now, then = math.inf, _margin(m, begin, y), begin
     if now < 0.0:
         return begin

@@ -48,9 +48,9 @@ PASSES_HIGH: Final = 20
 
 
 @compiled(inline=True)
-def _sliding_speed(m: Model, noted: Record, turn: float, w: float) -> float:
+def _sliding_speed(m: Model, noted: Record, surface_speed: float, w: float) -> float:
     first, second = levers(m, noted.position)
-    return first * turn - second * w
+    return first * surface_speed - second * w
 
 
 @compiled(inline=True)
@@ -61,7 +61,7 @@ def _is_known(m: Model, noted: Record) -> bool:
 @compiled(inline=True)
 def dry_guard(m: Model, t: float, y: Floats) -> float:
     """Least guard of all dry friction; that of a gear which slips under its load alone needs no force."""
-    if m.scene.friction.rubs == 0 and m.state.hold == FREE:
+    if m.scene.friction.any_friction == 0 and m.state.hold == FREE:
         return m.state.slip * y[W] + STILL
     return sliding_guard(m, t, y)
 
@@ -69,7 +69,7 @@ def dry_guard(m: Model, t: float, y: Floats) -> float:
 @compiled_once(FRICTION)
 def sliding_guard(m: Model, t: float, y: Floats) -> float:
     """Least guard of all that has friction."""
-    turn, pinion, gear = forces_at_shafts(m, t, y)
+    surface_speed, pinion, gear = forces_at_shafts(m, t, y)
     least, state, w = math.inf, m.state, y[W]
     for i in range(m.work.pair_forces.count if m.scene.friction.flanks != 0 else 0):
         noted = m.work.pair_forces.pair[i]
@@ -81,17 +81,17 @@ def sliding_guard(m: Model, t: float, y: Floats) -> float:
             continue
         least = min(least, limit - 0.5 * RUBS)
         if slide != STUCK:
-            least = min(least, slide * _sliding_speed(m, noted, turn, w) + STILL)
+            least = min(least, slide * _sliding_speed(m, noted, surface_speed, w) + STILL)
     if state.hold == AT_REST:
         list_elements(m, t, y)
         return min(least, rest_margin(m, pinion, gear) + 2.0 * NO_FORCE)
     if state.hold != FREE or has_hubs(m):
-        shafts = solve_shafts(m, t, y, turn, pinion, gear)
+        shafts = solve_shafts(m, t, y, surface_speed, pinion, gear)
         least = min(least, shafts.margin + 2.0 * NO_FORCE, shafts.corner)
     if has_gear_element(m) and state.slip != 0.0:
         least = min(least, state.slip * w + STILL)
     if m.scene.friction.pinion_rubs != 0 and state.pinion_slip != 0.0:
-        least = min(least, state.pinion_slip * turn + STILL)
+        least = min(least, state.pinion_slip * surface_speed + STILL)
     return least
 
 
@@ -168,9 +168,9 @@ def settle_sliding(m: Model, t: float, y: Floats, fresh: bool) -> bool:
         Whether forces have jumped, so that the integration must begin anew.
     """
     state, w = m.state, y[W]
-    if m.scene.friction.rubs == 0 and state.hold == FREE and not _has_fallen(state.slip, w, fresh):
+    if m.scene.friction.any_friction == 0 and state.hold == FREE and not _has_fallen(state.slip, w, fresh):
         return False
-    turn, pinion, gear = forces_at_shafts(m, t, y)
+    surface_speed, pinion, gear = forces_at_shafts(m, t, y)
     jumped = _drop_unloaded(m)
     kind, history = FREE, 0
     for i in range(m.work.pair_forces.count if m.scene.friction.flanks != 0 else 0):
@@ -178,7 +178,7 @@ def settle_sliding(m: Model, t: float, y: Floats, fresh: bool) -> bool:
         h = state.history[noted.history]
         if not _is_known(m, noted):
             continue
-        speed = _sliding_speed(m, noted, turn, w)
+        speed = _sliding_speed(m, noted, surface_speed, w)
         if h.slide == 0 and noted.limit > RUBS:
             h.slide = STUCK if state.hold == AT_REST else int(_sign(speed))
             jumped = True  # the rest of the step has been made without it
@@ -190,7 +190,7 @@ def settle_sliding(m: Model, t: float, y: Floats, fresh: bool) -> bool:
     if has_gear_element(m) and state.slip != 0.0 and _has_fallen(state.slip, w, fresh):
         kind = HELD_GEAR
     rubs = m.scene.friction.pinion_rubs != 0 and state.pinion_slip != 0.0
-    if rubs and _has_fallen(state.pinion_slip, turn, fresh):
+    if rubs and _has_fallen(state.pinion_slip, surface_speed, fresh):
         kind = HELD_PINION
     if state.hold == AT_REST:
         list_elements(m, t, y)
@@ -198,11 +198,11 @@ def settle_sliding(m: Model, t: float, y: Floats, fresh: bool) -> bool:
             _decide_at_rest(m, t, y)
             return True
         return jumped
-    if has_hubs(m) and solve_shafts(m, t, y, turn, pinion, gear).corner <= 0.0:
+    if has_hubs(m) and solve_shafts(m, t, y, surface_speed, pinion, gear).corner <= 0.0:
         state.load_sign = -state.load_sign
         jumped = True
     if kind == FREE and state.hold != FREE:
-        if solve_shafts(m, t, y, turn, pinion, gear).margin >= -1.5 * NO_FORCE:
+        if solve_shafts(m, t, y, surface_speed, pinion, gear).margin >= -1.5 * NO_FORCE:
             return jumped
         kind, history = state.hold, state.held_pair
     if kind == FREE:
@@ -264,21 +264,21 @@ def _decide(m: Model, t: float, y: Floats, kind: int, history: int) -> None:
     """Decide on an element that has come to rest, or is held no longer."""
     state, a1, a2 = m.state, m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass
     state.reversals += 1
-    turn, error = pinion_speed(m, y)
+    surface_speed, error = pinion_speed(m, y)
     first, second = _levers_of(m, kind, history)
-    excess = (first * turn + second * y[W]) / (a1 * first**2 + a2 * second**2)
-    turn -= a1 * first * excess
+    excess = (first * surface_speed + second * y[W]) / (a1 * first**2 + a2 * second**2)
+    surface_speed -= a1 * first * excess
     w = y[W] - a2 * second * excess
     let_go = state.hold == kind and state.held_pair == history  # what moves has directions already
     if state.hold != FREE and not let_go and _holds_both(m, first, second):
         _decide_at_rest(m, t, y)
         return
-    fastest = max(abs(turn), abs(w))
+    fastest = max(abs(surface_speed), abs(w))
     stops = not let_go and fastest <= AT_ONCE
     if stops and (fastest == 0.0 or state.hold != FREE or _rests(m, t, y)):
         _decide_at_rest(m, t, y)
         return
-    y[W], y[V] = w, rate_of(error, turn, w)
+    y[W], y[V] = w, rate_of(error, surface_speed, w)
     if state.hold != FREE and not let_go:
         _set_slip(m, state.hold, state.held_pair, 1.0)  # it has the same levers
     state.hold, state.held_pair = kind, history
@@ -298,26 +298,26 @@ def _holds_both(m: Model, first: float, second: float) -> bool:
 def _let_go(m: Model, t: float, y: Floats) -> None:
     """Let go of the element that is held, if that takes more friction than its limit."""
     state = m.state
-    turn, pinion, gear = forces_at_shafts(m, t, y)
-    shafts = solve_shafts(m, t, y, turn, pinion, gear)
+    surface_speed, pinion, gear = forces_at_shafts(m, t, y)
+    shafts = solve_shafts(m, t, y, surface_speed, pinion, gear)
     if shafts.margin < -NO_FORCE:
         kind, state.hold = state.hold, FREE
         slip = _sign(shafts.held)
         _set_slip(m, kind, state.held_pair, slip)
         if kind == HELD_PAIR and has_hubs(m):  # hubs that nearly lock may need less friction for more load
-            shafts = solve_shafts(m, t, y, turn, pinion, gear)
-            if slip * _sliding_rate(m, state.held_pair, turn, y[W], shafts) < 0.0:
+            shafts = solve_shafts(m, t, y, surface_speed, pinion, gear)
+            if slip * _sliding_rate(m, state.held_pair, surface_speed, y[W], shafts) < 0.0:
                 _set_slip(m, kind, state.held_pair, -slip)
 
 
 @compiled
-def _sliding_rate(m: Model, history: int, turn: float, w: float, shafts: Shafts) -> float:
+def _sliding_rate(m: Model, history: int, surface_speed: float, w: float, shafts: Shafts) -> float:
     """Rate of the sliding speed of a pair: by the accelerations, and as its levers change along the path."""
     for i in range(m.work.pair_forces.count):
         noted = m.work.pair_forces.pair[i]
         if noted.history == history:
             first, second = levers(m, noted.position)
-            return first * shafts.pinion - second * shafts.gear + lever_rate(m, noted, turn, w)
+            return first * shafts.pinion - second * shafts.gear + lever_rate(m, noted, surface_speed, w)
     return 0.0
 
 

@@ -56,4 +56,4 @@ def stop_guard(m: Model, t: float, y: Floats) -> float:
     """Time until a gear that stays within half a pitch has stuck, or the pitches that its turns still lack."""
     if m.scene.stop == _STICKS:
         return m.work.track.stop_time - t if m.work.track.stop_time > 0.0 else math.inf
-    return m.scene.stop_pitches - abs(y[PHASE] + m.state.turns - m.scene.stop_from)
+    return m.scene.stop_pitches - abs(y[PHASE] + m.state.whole_pitches - m.scene.stop_from)

@@ -162,8 +162,8 @@ def _note(m: Model, t: float, motion: tuple[float, float, float, float]) -> None
 def _base_circles(m: Model, y: Floats) -> tuple[float, float, float, float]:
     """Ways and speeds of the base circles of pinion and gear."""
     gear = y[PHASE] / m.scene.phase_rate
-    turn, e = pinion_speed(m, y)
-    return gear + y[U] + e.value, gear, turn, y[W]
+    surface_speed, e = pinion_speed(m, y)
+    return gear + y[U] + e.value, gear, surface_speed, y[W]
 
 
 @compiled
@@ -174,10 +174,10 @@ def _ways(
 
     Just behind a reversal that is still to be found a way is below zero, so that nothing has a corner there.
     """
-    x, z, turn, w = motion
+    x, z, surface_speed, w = motion
     slip, gear_slip, ageing = m.state.pinion_slip, m.state.slip, m.state.ageing
     ways = slip * (x - ageing.way[0]), gear_slip * (z - ageing.way[1])
-    return ways, (slip * turn, gear_slip * w)
+    return ways, (slip * surface_speed, gear_slip * w)
 
 
 @compiled

@@ -67,10 +67,10 @@ def equilibrium_margin(m: Model, pinion: float, gear: float) -> float:
     best = -math.inf
     for a in range(2 * work.pairs):
         i, side = a // 2, 1.0 - 2.0 * (a % 2)
-        alone, flank = True, work.element[i].coast
+        alone, flank = True, work.element[i].flank
         for b in range(2 * work.pairs):
             k, beyond = b // 2, 1.0 - 2.0 * (b % 2)
-            if work.element[k].coast == flank:
+            if work.element[k].flank == flank:
                 continue
             alone = False
             best = max(best, _around(m, _less(m, free, k, beyond, beyond), i, side, limits))
@@ -89,7 +89,7 @@ def _around(m: Model, left: _Left, i: int, side: float, limits: _Limits) -> floa
     best = max(best, _with_one(m, _less(m, left, i, side, 0.0), i, limits))
     first = j = -1
     for k in range(m.work.friction.pairs):
-        if m.work.friction.element[k].coast == m.work.friction.element[i].coast:
+        if m.work.friction.element[k].flank == m.work.friction.element[i].flank:
             if first < 0:
                 first = k
             elif j < 0:
@@ -108,10 +108,10 @@ def _less(m: Model, left: _Left, i: int, side: float, end: float) -> _Left:
     work = m.work.friction
     element = work.element[i]
     pinion, gear, along, over = left
-    first, second = across(m, element.coast != 0)
+    first, second = across(m, element.flank != 0)
     for j in range(work.pairs):
         pair = work.element[j]
-        if pair.coast != element.coast:
+        if pair.flank != element.flank:
             continue
         share = end if j == i else math.copysign(1.0, side * (pair.pinion - element.pinion))
         friction = share * pair.limit
@@ -155,7 +155,7 @@ def _with_one(m: Model, left: _Left, i: int, limits: _Limits) -> float:
             gear_falls = sign * limits.gear / element.gear
         total = (left.along, left.over)
         near, far, room = loads_with_friction(
-            m, element.coast != 0, total, constant, (falls, gear_falls), limits.pin
+            m, element.flank != 0, total, constant, (falls, gear_falls), limits.pin
         )
         for end in range(2):
             loads = far if end else near
@@ -179,8 +179,8 @@ def _with_two(m: Model, left: _Left, i: int, k: int, limits: _Limits) -> float:
     determinant = first.pinion * second.gear - second.pinion * first.gear
     if abs(determinant) < _PARALLEL:
         return best
-    first_along, first_over = across(m, first.coast != 0)
-    second_along, second_over = across(m, second.coast != 0)
+    first_along, first_over = across(m, first.flank != 0)
+    second_along, second_over = across(m, second.flank != 0)
     for which in range(4):
         on_pinion, on_gear = 1.0 - 2.0 * (which % 2), 1.0 - 2.0 * (which // 2)
         a, b = left.pinion - on_pinion * limits.pinion_dry, left.gear - on_gear * limits.gear_dry
@@ -205,28 +205,28 @@ def _with_two(m: Model, left: _Left, i: int, k: int, limits: _Limits) -> float:
             loads = far if end else near
             p = f - c * second.gear * loads.pinion + d * second.pinion * loads.gear
             q = g + c * first.gear * loads.pinion - d * first.pinion * loads.gear
-            if first.coast != second.coast:
+            if first.flank != second.flank:
                 inside = min(first.limit - abs(p), second.limit - abs(q))
             else:
                 inside = _inside(
-                    m, first.coast, p * first.pinion + q * second.pinion, p * first.gear + q * second.gear
+                    m, first.flank, p * first.pinion + q * second.pinion, p * first.gear + q * second.gear
                 )
             best = max(best, min(room, inside))
     return best
 
 
 @compiled
-def _inside(m: Model, coast: int, pinion: float, gear: float) -> float:
+def _inside(m: Model, flank: int, pinion: float, gear: float) -> float:
     """How far the frictions of a flank are inside its zonotope, by the forces that they take from both shafts."""
     work, least = m.work.friction, math.inf
     for i in range(work.pairs):
         element = work.element[i]
-        if element.coast != coast:
+        if element.flank != flank:
             continue
         held = 0.0
         for j in range(work.pairs):
             other = work.element[j]
-            if other.coast == coast:
+            if other.flank == flank:
                 held += other.limit * abs(element.pinion * other.gear - element.gear * other.pinion)
         taken = abs(element.pinion * gear - element.gear * pinion)
         least = min(least, (held - taken) / math.hypot(element.pinion, element.gear))

@@ -115,7 +115,7 @@ class _Pairs(NamedTuple):
         Levers of the pair that is held; zero if none is.
     limit : float
         Of its friction, with the error of the force of the pair.
-    bend : float
+    sliding_rate : float
         Rate of its sliding speed with shafts that keep their speeds, and what errors have brought about of it.
     on_coast : bool
         Whether it is of the coast flank.
@@ -127,16 +127,16 @@ class _Pairs(NamedTuple):
     first: float
     second: float
     limit: float
-    bend: float
+    sliding_rate: float
     on_coast: bool
 
 
 @compiled(inline=True)
-def _sum_pairs(m: Model, turn: float, w: float, pinion: float, gear: float) -> _Pairs:
+def _sum_pairs(m: Model, surface_speed: float, w: float, pinion: float, gear: float) -> _Pairs:
     """Sum the forces of all noted pairs, and take their friction from the forces at the base circles."""
     dry, state = m.scene.friction, m.state
     drive = coast = drive_friction = coast_friction = 0.0
-    held_first = held_second = limit = bend = 0.0
+    held_first = held_second = limit = sliding_rate = 0.0
     coast_held = False
     for i in range(m.work.pair_forces.count):
         noted = m.work.pair_forces.pair[i]
@@ -157,14 +157,16 @@ def _sum_pairs(m: Model, turn: float, w: float, pinion: float, gear: float) -> _
             drive_friction += friction
         if state.hold == HELD_PAIR and noted.history == state.held_pair:
             held_first, held_second, coast_held = first, second, on_coast
-            limit = noted.limit + dry.blur * abs(noted.slope)
-            bend = lever_rate(m, noted, turn, w) + RETURN * (first * turn - second * w)
+            limit = noted.limit + dry.gap_tolerance * abs(noted.slope)
+            sliding_rate = lever_rate(m, noted, surface_speed, w) + RETURN * (
+                first * surface_speed - second * w
+            )
     mesh = Mesh(drive, coast, drive_friction, coast_friction)
-    return _Pairs(pinion, gear, mesh, held_first, held_second, limit, bend, coast_held)
+    return _Pairs(pinion, gear, mesh, held_first, held_second, limit, sliding_rate, coast_held)
 
 
 @compiled(inline=True)
-def solve_shafts(m: Model, t: float, y: Floats, turn: float, pinion: float, gear: float) -> Shafts:
+def solve_shafts(m: Model, t: float, y: Floats, surface_speed: float, pinion: float, gear: float) -> Shafts:
     """Accelerations with the present directions of slip.
 
     Parameters
@@ -173,16 +175,16 @@ def solve_shafts(m: Model, t: float, y: Floats, turn: float, pinion: float, gear
         Time over tau; the forces of the pairs have been noted there, with their limits.
     y : ndarray, shape (n,)
         State.
-    turn : float
+    surface_speed : float
         Surface velocity of the pinion.
     pinion, gear : float
         Forces at the base circles without friction and dry resistance.
     """
     friction, state = m.scene.friction, m.state
-    pairs = _sum_pairs(m, turn, y[W], pinion, gear)
+    pairs = _sum_pairs(m, surface_speed, y[W], pinion, gear)
     mesh, loads, pin, corner = pairs.mesh, Loads(0.0, 0.0), (0.0, 0.0), math.inf
     if friction.joints != 0:
-        pin = pin_force(m, t, y, turn)
+        pin = pin_force(m, t, y, surface_speed)
         loads, along = turning_loads(m, mesh, pin)
         if has_hubs(m) and state.hold != AT_REST and state.hold != HELD_PAIR:
             corner = state.load_sign * along + RUBS
@@ -197,7 +199,7 @@ def solve_shafts(m: Model, t: float, y: Floats, turn: float, pinion: float, gear
     if state.hold == HELD_PAIR:
         first, second = a1 * pairs.first, a2 * pairs.second
         inertia = max(first * pairs.first + second * pairs.second, 1e-300)
-        held = (first * on_pinion - second * on_gear + pairs.bend) / inertia
+        held = (first * on_pinion - second * on_gear + pairs.sliding_rate) / inertia
         if friction.joints != 0:
             by_loads = first * hub_on_pinion / inertia, -second * hub_on_gear / inertia
             mesh, loads, held, margin = _with_held(m, pairs, held, by_loads, pin)
@@ -261,11 +263,11 @@ def with_acting(m: Model, t: float, y: Floats, gear: float) -> float:
 
 @compiled_once(FRICTION)
 def rubbed_accelerations(
-    m: Model, t: float, y: Floats, turn: float, pinion: float, gear: float
+    m: Model, t: float, y: Floats, surface_speed: float, pinion: float, gear: float
 ) -> tuple[float, float]:
     """Accelerations of both base circles, see `solve_shafts`; the gear's force is without what acts on its shaft."""
     set_limits(m, t, y[W])
-    shafts = solve_shafts(m, t, y, turn, pinion, with_acting(m, t, y, gear))
+    shafts = solve_shafts(m, t, y, surface_speed, pinion, with_acting(m, t, y, gear))
     return shafts.pinion, shafts.gear
 
 
@@ -303,7 +305,7 @@ def friction_slopes(m: Model, y: Floats) -> Slopes:
     pinion_u = pinion_phase = gear_u = gear_phase = pinion_v = pinion_w = gear_v = gear_w = 0.0
     for i in range(m.work.pair_forces.count if m.scene.friction.flanks != 0 else 0):
         noted = m.work.pair_forces.pair[i]
-        coast = flank_of_history(m, noted.history)
+        flank = flank_of_history(m, noted.history)
         first, second = levers(m, noted.position)
         if state.hold == HELD_PAIR and noted.history == state.held_pair:
             inertia = max(a1 * first**2 + a2 * second**2, 1e-300)
@@ -316,8 +318,8 @@ def friction_slopes(m: Model, y: Floats) -> Slopes:
         by_gap = direction(m, noted) * noted.limit_slope
         if by_gap == 0.0:
             continue
-        slope = pair_gap(m, coast, noted.pair, y[U], y[V], y[PHASE], y[W])[2]
-        gap_u = 2.0 * coast - 1.0
+        slope = pair_gap(m, flank, noted.pair, y[U], y[V], y[PHASE], y[W])[2]
+        gap_u = 2.0 * flank - 1.0
         gap_phase = -gap_u * slope / m.scene.phase_rate
         pinion_u -= by_gap * gap_u * first
         pinion_phase -= by_gap * gap_phase * first

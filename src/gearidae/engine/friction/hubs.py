@@ -17,7 +17,7 @@ from gearidae.engine.model.state import DRIVE, PHASE, Floats, Model, U
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.laws.shaft.own import law_force, law_force_rate
 
-_TINY = 1e-300
+_LEAST_DIVISOR = 1e-300
 _ROUNDING = 1e-12
 _NEWTON: Final = 40
 """Steps of Newton's method: far from hubs that lock three are enough."""
@@ -46,9 +46,9 @@ def has_hubs(m: Model) -> bool:
 
 
 @compiled(inline=True)
-def across(m: Model, coast: bool) -> tuple[float, float]:
+def across(m: Model, on_coast: bool) -> tuple[float, float]:
     """Direction of the friction of a flank: components along and across the line of action of the drive flank."""
-    if coast:
+    if on_coast:
         return m.scene.friction.sine, -m.scene.friction.cosine
     return 0.0, 1.0
 
@@ -62,7 +62,7 @@ def vector_sum(m: Model, mesh: Mesh) -> tuple[float, float]:
 
 
 @compiled(inline=True)
-def pin_force(m: Model, t: float, y: Floats, turn: float) -> tuple[float, float]:
+def pin_force(m: Model, t: float, y: Floats, surface_speed: float) -> tuple[float, float]:
     """Force of the pin on the pinion, in the components of `vector_sum`; zero for a drive that is a couple.
 
     Parameters
@@ -71,21 +71,21 @@ def pin_force(m: Model, t: float, y: Floats, turn: float) -> tuple[float, float]
         Time over tau.
     y : ndarray, shape (n,)
         State.
-    turn : float
+    surface_speed : float
         Surface velocity of the pinion.
     """
     if m.scene.friction.forced == 0:
         return 0.0, 0.0
-    return _turned(m, law_force(m, DRIVE, t, torque_angle(m, DRIVE, y[U], y[PHASE]), turn))
+    return _turned(m, law_force(m, DRIVE, t, torque_angle(m, DRIVE, y[U], y[PHASE]), surface_speed))
 
 
 @compiled(inline=True)
-def pin_rate(m: Model, t: float, y: Floats, turn: float, acceleration: float) -> tuple[float, float]:
+def pin_rate(m: Model, t: float, y: Floats, surface_speed: float, acceleration: float) -> tuple[float, float]:
     """Rate of `pin_force` along the motion."""
     if m.scene.friction.forced == 0:
         return 0.0, 0.0
     angle = torque_angle(m, DRIVE, y[U], y[PHASE])
-    return _turned(m, law_force_rate(m, DRIVE, t, angle, turn, acceleration))
+    return _turned(m, law_force_rate(m, DRIVE, t, angle, surface_speed, acceleration))
 
 
 @compiled(inline=True)
@@ -140,7 +140,7 @@ class Solutions(NamedTuple):
 @compiled(inline=True)
 def loads_with_friction(
     m: Model,
-    coast: bool,
+    on_coast: bool,
     total: tuple[float, float],
     friction: float,
     falls: tuple[float, float],
@@ -150,7 +150,7 @@ def loads_with_friction(
 
     Parameters
     ----------
-    coast : bool
+    on_coast : bool
         Whether the pair is of the coast flank.
     total : tuple of float
         `vector_sum` without that friction.
@@ -161,7 +161,7 @@ def loads_with_friction(
     pin : tuple of float
         As `pin_force` has it.
     """
-    x, z = across(m, coast)
+    x, z = across(m, on_coast)
     u = (total[0] + friction * x, total[1] + friction * z)
     return consistent_loads(u, (-falls[0] * x, -falls[0] * z), (-falls[1] * x, -falls[1] * z), pin)
 
@@ -186,10 +186,14 @@ def consistent_loads(
     whole = u[0] * u[0] + u[1] * u[1]
     root = math.sqrt(max(half * half - square * whole, 0.0))
     if square <= 0.0:
-        near = whole / max(root - half, _TINY) if half <= 0.0 else (half + root) / max(-square, _TINY)
+        near = (
+            whole / max(root - half, _LEAST_DIVISOR)
+            if half <= 0.0
+            else (half + root) / max(-square, _LEAST_DIVISOR)
+        )
         far, room = near, math.inf
     else:
-        near, far = whole / max(root + abs(half), _TINY), (root + abs(half)) / square
+        near, far = whole / max(root + abs(half), _LEAST_DIVISOR), (root + abs(half)) / square
         room = -half - math.sqrt(square * whole)
     if pin[0] == 0.0 == pin[1]:
         return Solutions(Loads(near, near), Loads(far, far), room)
@@ -217,8 +221,8 @@ def _beside_pin(
         missed = max(abs(f), abs(g))
         if missed <= _ROUNDING * (pinion + gear):
             return Loads(pinion, gear), 0.0
-        p, q = (x - pin[0]) / max(pinion, _TINY), (z - pin[1]) / max(pinion, _TINY)
-        r, s = x / max(gear, _TINY), z / max(gear, _TINY)
+        p, q = (x - pin[0]) / max(pinion, _LEAST_DIVISOR), (z - pin[1]) / max(pinion, _LEAST_DIVISOR)
+        r, s = x / max(gear, _LEAST_DIVISOR), z / max(gear, _LEAST_DIVISOR)
         a, b = p * by_pinion[0] + q * by_pinion[1] - 1.0, p * by_gear[0] + q * by_gear[1]
         c, d = r * by_pinion[0] + s * by_pinion[1], r * by_gear[0] + s * by_gear[1] - 1.0
         determinant = a * d - b * c

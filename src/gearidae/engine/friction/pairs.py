@@ -2,8 +2,8 @@
 
 A pair touches at the distances r1 and r2 from the points where the line of action touches the base circles. Along the
 flanks the pinion slides over the gear at ``v = r1 w1 - r2 w2``, on both flanks of a tooth with r1 and r2 of the own
-pair. With surface velocities of the base circles, ``turn = R1 w1`` and ``w = R2 w2``, that is
-``(r1/R1) turn - (r2/R2) w``: the two ratios are the pair's levers, by which friction acts on the shafts, too.
+pair. With surface velocities of the base circles, ``surface_speed = R1 w1`` and ``w = R2 w2``, that is
+``(r1/R1) surface_speed - (r2/R2) w``: the two ratios are the pair's levers, by which friction acts on the shafts, too.
 """
 
 from __future__ import annotations
@@ -29,11 +29,11 @@ def levers(m: Model, inside: float) -> tuple[float, float]:
 
 
 @compiled(inline=True)
-def lever_rate(m: Model, noted: Record, turn: float, w: float) -> float:
+def lever_rate(m: Model, noted: Record, surface_speed: float, w: float) -> float:
     """Rate of the sliding speed of a pair whose shafts keep their speeds: the levers change along the path."""
     if not 0.0 < noted.position < m.scene.contact_ratio:
         return 0.0
-    rate = w * (m.scene.friction.pinion_bend * turn + m.scene.friction.gear_bend * w)
+    rate = w * (m.scene.friction.pinion_lever_slope * surface_speed + m.scene.friction.gear_lever_slope * w)
     return -rate if flank_of_history(m, noted.history) == COAST else rate
 
 
@@ -81,6 +81,6 @@ def _length_rate(m: Model, noted: Record, w: float) -> float:
     if not 0.0 < noted.position < m.scene.contact_ratio:
         return 0.0
     radius = m.scene.start_radius + noted.position
-    bend = radius * m.scene.sum_curvature
-    rate = 0.5 * (1.0 - 2.0 * bend) / (radius * (1.0 - bend)) * m.scene.phase_rate * w
+    radius_share = radius * m.scene.sum_curvature
+    rate = 0.5 * (1.0 - 2.0 * radius_share) / (radius * (1.0 - radius_share)) * m.scene.phase_rate * w
     return -rate if flank_of_history(m, noted.history) == COAST else rate

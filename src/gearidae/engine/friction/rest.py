@@ -48,7 +48,7 @@ def list_elements(m: Model, t: float, y: Floats) -> None:
         if friction.flanks != 0 and h.slide != 0 and h.pair == noted.pair:
             first, second = levers(m, noted.position)
             _set(work.element[count], first, -second, noted.limit, HELD_PAIR)
-            work.element[count].history, work.element[count].coast = noted.history, int(on_coast)
+            work.element[count].history, work.element[count].flank = noted.history, int(on_coast)
             count += 1
     work.pairs = count
     work.load[0], work.load[1] = vector_sum(m, Mesh(drive, coast, 0.0, 0.0))
@@ -68,7 +68,7 @@ def list_elements(m: Model, t: float, y: Floats) -> None:
 @compiled(inline=True)
 def _set(element: Record, pinion: float, gear: float, limit: float, hold: int) -> None:
     element.pinion, element.gear, element.limit, element.hold = pinion, gear, max(limit, 0.0), hold
-    element.hub, element.coast = 0.0, 0
+    element.hub, element.flank = 0.0, 0
 
 
 @compiled
@@ -173,7 +173,7 @@ def _slipping(m: Model, pinion: float, gear: float, x: float, y: float, i: int, 
         by_pinion += slip * other.hub * other.pinion
         by_gear += slip * other.hub * other.gear
         if other.hold == HELD_PAIR:
-            first, second = across(m, other.coast != 0)
+            first, second = across(m, other.flank != 0)
             along += friction * first
             over += friction * second
     return _Slipping(pinion, gear, by_pinion, by_gear, along, over)
@@ -198,7 +198,7 @@ def _along(m: Model, pinion: float, gear: float, x: float, y: float, i: int) -> 
     room = math.inf
     if element.hold == HELD_PAIR:
         total, pin = (s.along, s.over), (m.work.friction.pin[0], m.work.friction.pin[1])
-        near, far, room = loads_with_friction(m, element.coast != 0, total, held, (falls, gear_falls), pin)
+        near, far, room = loads_with_friction(m, element.flank != 0, total, held, (falls, gear_falls), pin)
     best = Way(0.0, 0.0, -math.inf, i)
     for which in range(2):
         loads = far if which else near

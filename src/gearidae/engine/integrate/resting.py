@@ -30,7 +30,7 @@ _PASSES: Final = 2
 @compiled(inline=True)
 def _may_rest(m: Model) -> bool:
     """Whether something holds gears: where nothing rubs, nothing of what follows has been compiled."""
-    return bool(m.state.hold != FREE and m.scene.friction.on != 0)
+    return bool(m.state.hold != FREE and m.scene.friction.any_dry != 0)
 
 
 @compiled(inline=True)
@@ -135,7 +135,7 @@ def longest_step(m: Model) -> float:
 
     Registered laws bound none: what is known of them is the duration of a run, on which its steps must not depend.
     """
-    longest, look = m.scene.longest_step, m.scene.rest_look
-    if m.state.hold != FREE and look < np.inf and m.scene.rest_bend < np.inf:
-        return min(longest, look) if longest > 0.0 else look
+    longest, search_step = m.scene.longest_step, m.scene.rest_search_step
+    if m.state.hold != FREE and search_step < np.inf and m.scene.rest_margin_curvature < np.inf:
+        return min(longest, search_step) if longest > 0.0 else search_step
     return longest

@@ -65,9 +65,9 @@ def first_step(m: Model, t: float, y: Floats, yp: Floats, longest: float) -> flo
             step = min(step, 0.25 * abs(yp[W]) / change)
     if not in_flight(m):
         step = min(step, FIRST_RELIEF * relief_step(m, y))
-    for coast in range(2):
+    for flank in range(2):
         # free flight has no curvature, and the flank at its end comes without warning
-        apart = nearest_gap(m, coast, y) - m.scene.cutoff
+        apart = nearest_gap(m, flank, y) - m.scene.cutoff
         if apart > 0.0:
             step = min(step, 0.5 * max(apart, 1.0) / max(abs(y[V]), 1e-9))
     return float(step)
@@ -81,7 +81,7 @@ def rebase(m: Model, y: Floats) -> None:
     slots = m.scene.slots  # a multiple of the slots leaves every pair in its own
     shift = slots * math.floor(y[PHASE] / slots)
     y[PHASE] -= shift
-    m.state.turns += shift
+    m.state.whole_pitches += shift
     m.state.mesh_mark_below -= shift
     m.state.mesh_mark_above -= shift
     for shaft in range(2):

@@ -56,22 +56,22 @@ def _energies(m: Model, gap: float) -> tuple[Shares, Shares]:
 @compiled(inline=True)
 def _inside(m: Model, pair: PairState) -> float:
     """Path position of a pair, clipped to the path."""
-    return min(max(pair.place, 0.0), m.scene.contact_ratio)
+    return min(max(pair.position, 0.0), m.scene.contact_ratio)
 
 
 @compiled_once(SOLVER)
 def _pull(m: Model, y: Floats, pair: PairState) -> PairForce:
     """Attraction of a pair, scaled."""
     inside = _inside(m, pair)
-    shares = shares_of(m, pair.coast, pair.number, inside)
+    shares = shares_of(m, pair.flank, pair.number, inside)
     a, b, c = attraction(m, 0, pair.gap), attraction(m, 1, pair.gap), attraction(m, 2, pair.gap)
     pull, slope = weighed(shares, (a.force, b.force, c.force)), weighed(shares, (a.slope, b.slope, c.slope))
-    length, path, by_gap, by_place = contact_length(m, inside), 0.0, 0.0, 0.0
-    if m.scene.curvature_force != 0 and is_on_path(m, pair.coast, pair.number):
+    length, path, by_gap, by_position = contact_length(m, inside), 0.0, 0.0, 0.0
+    if m.scene.curvature_force != 0 and is_on_path(m, pair.flank, pair.number):
         energies, slopes = _energies(m, pair.gap)
-        path, by_gap, by_place = slopes_along_path(m, pair.coast, pair.number, y[PHASE], energies, slopes)
+        path, by_gap, by_position = slopes_along_path(m, pair.flank, pair.number, y[PHASE], energies, slopes)
     return PairForce(
-        length * pull, length * slope, 0.0, 0.0, 0.0, 0.0, -path, -by_gap, -by_place, 0.0, 0.0, 0.0
+        length * pull, length * slope, 0.0, 0.0, 0.0, 0.0, -path, -by_gap, -by_position, 0.0, 0.0, 0.0
     )
 
 
@@ -84,7 +84,7 @@ def _force(m: Model, t: float, y: Floats, pair: PairState, settling: bool, value
 def _stored(m: Model, pair: PairState) -> float:
     """Energy of the attraction of a pair, scaled."""
     inside = _inside(m, pair)
-    shares = shares_of(m, pair.coast, pair.number, inside)
+    shares = shares_of(m, pair.flank, pair.number, inside)
     return contact_length(m, inside) * weighed(shares, _energies(m, pair.gap)[0])
 
 

@@ -70,13 +70,13 @@ def _sums(m: Model, k: int, now: PairState) -> Sums:
     load = load_d = load_slope = stiffness = stiffness_d = stiffness_dd = 0.0
     limit = limit_stiffness = limit_stiffness_d = d = 0.0
     rubs = m.scene.friction.flanks != 0
-    at, joined = spot_at(m, now.place, now.moves), column(m, k, JOINED)
+    at, joined = spot_at(m, now.position, now.moves), column(m, k, JOINED)
     arcs, heights, kinds = column(m, k, ARC), column(m, k, HEIGHT), column(m, k, KIND)
-    bend = 0.5 * m.scene.population.steepness / at.radius
+    half_curvature = 0.5 * m.scene.population.steepness / at.radius
     for i in range(m.work.contact[k].joined):
         j = int(m.rows[joined + i])
         x = m.rows[arcs + j] - at.arc
-        overlap = m.rows[heights + j] - now.gap - bend * x * x
+        overlap = m.rows[heights + j] - now.gap - half_curvature * x * x
         p, s = candidate_load(m, int(m.rows[kinds + j]), overlap)
         load += p
         stiffness += s
@@ -145,7 +145,7 @@ def asperity_force(m: Model, pair: PairState) -> PairForce:
 def _stored(m: Model, pair: PairState) -> float:
     """Energy that a pair's joined asperities store, from free surfaces, scaled."""
     energy, k, joined = 0.0, pair.k, column(m, pair.k, JOINED)
-    at = spot_at(m, pair.place, pair.moves)
+    at = spot_at(m, pair.position, pair.moves)
     for n in range(m.work.contact[k].joined):
         j = int(m.rows[joined + n])
         x = m.rows[column(m, k, ARC) + j] - at.arc

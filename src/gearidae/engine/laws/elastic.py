@@ -17,8 +17,8 @@ from gearidae.engine.elastic.energy import (
     nodes_stored,
 )
 from gearidae.engine.elastic.limits import limit_of_nodes
+from gearidae.engine.elastic.node_rows import TANGENT, row
 from gearidae.engine.elastic.nodes import node_force
-from gearidae.engine.elastic.rows import TANGENT, row
 from gearidae.engine.elastic.static_condensation import condense_pair
 from gearidae.engine.model.state import PHASE, Floats, Model, V, W
 from gearidae.engine.pairs.coverage import (
@@ -41,8 +41,8 @@ from gearidae.laws.pair_law import NO_PAIR_FORCE, PairForce, PairLaw, both_force
 @compiled_once(ELASTIC_PART, makes_arrays=True)
 def _of_pair(m: Model, t: float, y: Floats, pair: PairState, settling: bool) -> PairForce:
     """Force of a pair; of materials with different coefficients with the limit of its friction."""
-    note_shares(m, pair.k, pair.coast, pair.number, pair.place)
-    length = contact_length(m, pair.place)
+    note_shares(m, pair.k, pair.flank, pair.number, pair.position)
+    length = contact_length(m, pair.position)
     if settling:
         load, slope = condense_pair(m, pair.k, pair.known, t, y, pair.gap, pair.rate, length)
     else:
@@ -68,10 +68,10 @@ def _by_length(
 
     Where shares do not change, all of it is said to be of the bodies, as nothing but the length matters.
     """
-    coast = flank_of_history(m, k)
-    note_shares(m, k, coast, number, path_position(m, coast, number, y[PHASE]))
+    flank = flank_of_history(m, k)
+    note_shares(m, k, flank, number, path_position(m, flank, number, y[PHASE]))
     bodies, change = nodes_length_force(m, k, t, y, gap, rate, length)
-    if m.scene.by_place == 0:
+    if m.scene.covered_by_position == 0:
         return bodies, change, NONE, NONE
     energies, slopes = nodes_energies(m, k, y, gap)
     shares = noted_shares(m, k)
@@ -84,29 +84,29 @@ def _along_path(m: Model, t: float, y: Floats, pair: PairState) -> PairForce:
 
     Its slope in the gap is left out, which only steers Newton's iteration.
     """
-    if not (pair.known and is_on_path(m, pair.coast, pair.number)):  # just within reach
+    if not (pair.known and is_on_path(m, pair.flank, pair.number)):  # just within reach
         return NO_PAIR_FORCE
-    coast, number, k = pair.coast, pair.number, pair.k
-    pitch = (1.0 - 2.0 * coast) / m.scene.phase_rate
-    length, stretch, bend = length_and_rates(m, coast, number, y[PHASE], pitch, 0.0)
+    flank, number, k = pair.flank, pair.number, pair.k
+    pitch = (1.0 - 2.0 * flank) / m.scene.phase_rate
+    length, stretch, second_rate = length_and_rates(m, flank, number, y[PHASE], pitch, 0.0)
     bodies, _, (a, b, c), _ = _by_length(m, t, y, k, number, pair.gap, pair.rate, length)
     a1, b1, c1 = nodes_losses(m, k, y, pair.gap)
     energies = (a - a1, b - b1, c - c1)
-    along, by_gap, by_place = slopes_along_path(m, coast, number, y[PHASE], energies, NONE)
-    return of_path(-(bodies * stretch + along), -by_gap, -(bodies * bend + by_place))
+    along, by_gap, by_position = slopes_along_path(m, flank, number, y[PHASE], energies, NONE)
+    return of_path(-(bodies * stretch + along), -by_gap, -(bodies * second_rate + by_position))
 
 
 @compiled_once(ELASTIC_PART)
 def _power(
     m: Model, t: float, y: Floats, k: int, gap: float, w_rate: float, value: tuple[float, float]
 ) -> tuple[float, float]:
-    coast, number = flank_of_history(m, k), m.state.history[k].pair
-    opening = opening_of(m, coast, y[V])
-    length, stretch, bend = length_and_rates(m, coast, number, y[PHASE], y[W], w_rate)
+    flank, number = flank_of_history(m, k), m.state.history[k].pair
+    opening = opening_of(m, flank, y[V])
+    length, stretch, second_rate = length_and_rates(m, flank, number, y[PHASE], y[W], w_rate)
     bodies, change, energies, slopes = _by_length(m, t, y, k, number, gap, opening, length)
-    energy = weighed_length(m, (coast, number, y[PHASE]), y[W], w_rate, energies, slopes)
+    energy = weighed_length(m, (flank, number, y[PHASE]), y[W], w_rate, energies, slopes)
     power = bodies * stretch + energy.rate
-    rate = change * stretch + bodies * bend + energy.bend + opening * energy.by_gap
+    rate = change * stretch + bodies * second_rate + energy.second_rate + opening * energy.by_gap
     return value[0] + power, value[1] + rate
 
 
@@ -131,9 +131,9 @@ def _loss(m: Model, gap: float, material: int, loss: float) -> tuple[float, floa
 
 @compiled_once(ELASTIC_PART)
 def _energy(m: Model, y: Floats, pair: PairState, value: tuple[float, float]) -> tuple[float, float]:
-    k, gap, length = pair.k, pair.gap, contact_length(m, pair.place)
-    shares = shares_of(m, pair.coast, pair.number, pair.place)
-    note_shares(m, k, pair.coast, pair.number, pair.place)
+    k, gap, length = pair.k, pair.gap, contact_length(m, pair.position)
+    shares = shares_of(m, pair.flank, pair.number, pair.position)
+    note_shares(m, k, pair.flank, pair.number, pair.position)
     stored = length * nodes_stored(m, k, m.state.time, y, gap, pair.rate, length)
     lost = length * weighed(shares, _joining(m, k, y, gap, (NONE, NONE))[0])
     return value[0] + stored, value[1] + lost

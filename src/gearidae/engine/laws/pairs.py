@@ -167,9 +167,9 @@ def radius_power(m: Model, t: float, y: Floats, w_rate: float) -> tuple[float, f
         return power, rate
     for i in range(list_known(m, y)):
         k = m.work.known[i]
-        coast, pair = flank_of_history(m, k), m.state.history[k].pair
-        gap = path_gap(m, coast, pair, y)
-        if in_reach(m, gap) and is_on_path(m, coast, pair):
+        flank, pair = flank_of_history(m, k), m.state.history[k].pair
+        gap = path_gap(m, flank, pair, y)
+        if in_reach(m, gap) and is_on_path(m, flank, pair):
             more, change = _power(m, t, y, k, gap, w_rate, (-0.0, -0.0))
             power += more
             rate += change
@@ -206,11 +206,11 @@ def _booking(law: PairLaw) -> Verb:
         for k in range(m.scene.histories):
             if m.work.within[k] == 0.0:
                 continue
-            coast, number = flank_of_history(m, k), pair_within(m, k)
+            flank, number = flank_of_history(m, k), pair_within(m, k)
             follow_orbit(m, r.time)
-            start = pair_motion(m, coast, number, before, r.mesh_acceleration, r.gear_acceleration)
+            start = pair_motion(m, flank, number, before, r.mesh_acceleration, r.gear_acceleration)
             follow_orbit(m, r.time + h)
-            end = pair_motion(m, coast, number, now, yp[V], yp[W])
+            end = pair_motion(m, flank, number, now, yp[V], yp[W])
             taken = of_pair(m, h, start, end, taken)
         m.state.energy[name] += taken[0]
         m.state.energy.loss_error += taken[1]

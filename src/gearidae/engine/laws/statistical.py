@@ -84,17 +84,17 @@ def pair_force(
 @compiled_once(SOLVER)
 def _along_path(m: Model, t: float, y: Floats, pair: PairState) -> PairForce:
     """Force along the path of contact that pays for the changing length, see `gearidae.engine.laws.pairs`."""
-    if not is_on_path(m, pair.coast, pair.number):  # just within reach
+    if not is_on_path(m, pair.flank, pair.number):  # just within reach
         return NO_PAIR_FORCE
     energies, slopes = free_energies(m, pair.k, pair.known, t, pair.gap, pair.rate)
-    path, by_gap, by_place = slopes_along_path(m, pair.coast, pair.number, y[PHASE], energies, slopes)
-    return of_path(-path, -by_gap, -by_place)
+    path, by_gap, by_position = slopes_along_path(m, pair.flank, pair.number, y[PHASE], energies, slopes)
+    return of_path(-path, -by_gap, -by_position)
 
 
 @compiled(inline=True)
 def _force(m: Model, t: float, y: Floats, pair: PairState, settling: bool, value: PairForce) -> PairForce:
-    shares = shares_of(m, pair.coast, pair.number, pair.place)
-    load, slope = pair_force(m, pair.k, pair.known, t, pair.gap, pair.rate, pair.place, shares)
+    shares = shares_of(m, pair.flank, pair.number, pair.position)
+    load, slope = pair_force(m, pair.k, pair.known, t, pair.gap, pair.rate, pair.position, shares)
     value = both_forces(value, of_contact(load, slope))
     return both_forces(value, _along_path(m, t, y, pair)) if m.scene.curvature_force != 0 else value
 
@@ -290,7 +290,7 @@ def _loss(m: Model, k: int, gap: float, material: int) -> tuple[float, float]:
 
 @compiled
 def _energy(m: Model, y: Floats, pair: PairState, value: tuple[float, float]) -> tuple[float, float]:
-    length, shares = contact_length(m, pair.place), shares_of(m, pair.coast, pair.number, pair.place)
+    length, shares = contact_length(m, pair.position), shares_of(m, pair.flank, pair.number, pair.position)
     stored = length * weighed(shares, stored_energies(m, pair.k, pair.gap)[0])
     lost = length * weighed(shares, _joining(m, pair.k, y, pair.gap, (NONE, NONE))[0])
     return value[0] + stored, value[1] + lost

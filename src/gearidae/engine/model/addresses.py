@@ -34,22 +34,22 @@ def _model(typing: Any, address: Any) -> Any:
     """
     kind: Any = types.NamedTuple((*_RECORDS, _ARRAY, _ARRAY), Model)  # type: ignore[no-untyped-call]
 
-    def look(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         base = builder.inttoptr(values[0], _WORD.as_pointer())
 
-        def load(place: int) -> Any:
-            return builder.load(builder.gep(base, [ir.Constant(_WORD, place)]))
+        def load(index: int) -> Any:
+            return builder.load(builder.gep(base, [ir.Constant(_WORD, index)]))
 
-        def array(place: int) -> Any:
-            data = builder.inttoptr(load(place), ir.DoubleType().as_pointer())
-            return _array_at(context, builder, data, load(place + 1))
+        def array(index: int) -> Any:
+            data = builder.inttoptr(load(index), ir.DoubleType().as_pointer())
+            return _array_at(context, builder, data, load(index + 1))
 
         records = [
             builder.inttoptr(load(k), context.get_value_type(record)) for k, record in enumerate(_RECORDS)
         ]
         return context.make_tuple(builder, signature.return_type, [*records, array(3), array(5)])
 
-    return kind(types.int64), look
+    return kind(types.int64), generate
 
 
 def _address(typing: Any, record: Any) -> Any:
@@ -69,11 +69,11 @@ model_at: Any = intrinsic(_model)
 def _numbers(typing: Any, record: Any) -> Any:
     """Type and code of the numbers of a record of real numbers only."""
 
-    def look(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         data = builder.bitcast(values[0], ir.DoubleType().as_pointer())
         return _array_at(context, builder, data, ir.Constant(_WORD, record.size // 8))
 
-    return _ARRAY(record), look
+    return _ARRAY(record), generate
 
 
 numbers_of: Any = intrinsic(_numbers)
@@ -96,7 +96,7 @@ class Addresses:
 
     Attributes
     ----------
-    place : int
+    base : int
         What `model_at` takes.
     """
 
@@ -104,4 +104,4 @@ class Addresses:
         self._model = m
         self._pointers: NDArray[np.int64] = np.zeros(POINTERS, np.int64)
         note_addresses(m, self._pointers)
-        self.place = int(self._pointers.ctypes.data)
+        self.base = int(self._pointers.ctypes.data)

@@ -65,9 +65,9 @@ HISTORY_FIELDS: Final = (
         Unit("`force_scale` sigma"),
         shape=(MATERIALS,),
     ),
-    Quantity("lag", "what joining has taken less than at the present contact length", ENERGY),
-    Quantity("lag_power", "rate of `lag` at the last accepted time", POWER),
-    Quantity("lag_rate", "rate of `lag_power` there", POWER_RATE),
+    Quantity("adhesion_lag", "what joining has taken less than at the present contact length", ENERGY),
+    Quantity("adhesion_lag_power", "rate of `adhesion_lag` at the last accepted time", POWER),
+    Quantity("adhesion_lag_power_rate", "rate of `adhesion_lag_power` there", POWER_RATE),
     flag("stretched", "1 if asperities of it were stretched at the last turning point"),
     count(
         "slide",
@@ -149,7 +149,7 @@ MOST_STANDSTILLS: Final = 64
 _ZERO_FIELDS: Final = (
     Quantity("time", "of a zero of the gear's speed; free gears start there at rest", SECONDS),
     Quantity("position", "how far the gear had turned by then", PITCHES),
-    Quantity("lead", "of the pinion's base circle over the gear's, from the start of a chain", LENGTH),
+    Quantity("pinion_lead", "of the pinion's base circle over the gear's, from the start of a chain", LENGTH),
     count("exits", "mesh exits until then"),
     Quantity("lowest", "position of the gear since then, at zeros of its speed", PITCHES),
     Quantity("highest", "position of the gear since then, at zeros of its speed", PITCHES),
@@ -206,11 +206,11 @@ _STANDING_FIELDS: Final = (
     Quantity("low", "position farthest back since it last went back", PITCHES),
     flag("left", "1 once the gear has left half a pitch from the start of a chain"),
     Quantity("rest_time", "for which dry friction has held the gear", SECONDS),
-    Quantity("look_time", "when `mark` of the zeros is looked at next", SECONDS),
+    Quantity("distances_time", "when `mark` of the zeros is looked at next", SECONDS),
     count("way", "sign of the speed at the last accepted time", low=-1, high=1),
     count("held", "what friction held then", low=FREE, high=AT_REST),
-    Quantity("place", "of the gear at its last zero", PITCHES),
-    Quantity("place_time", "when that was", SECONDS),
+    Quantity("zero_position", "of the gear at its last zero", PITCHES),
+    Quantity("zero_time", "when that was", SECONDS),
     flag("near", "1 as long as the gear is near that position"),
     Quantity("near_time", "until when it was", SECONDS),
     Quantity("near_position", "where it was then", PITCHES),
@@ -249,11 +249,13 @@ _AGEING_FIELDS: Final = (
 
 STATE_FIELDS: Final = (
     Quantity("time", "last accepted time", TIME),
-    Quantity("turns", "whole pitches taken out of the phase", PITCHES, high=COUNT_HIGH),
+    Quantity("whole_pitches", "whole pitches taken out of the phase", PITCHES, high=COUNT_HIGH),
     Quantity(
-        "first_place", "position of the gear where a chain of runs began, where shafts' angles are 0", PITCHES
+        "first_position",
+        "position of the gear where a chain of runs began, where shafts' angles are 0",
+        PITCHES,
     ),
-    Quantity("initial_lead", "u + e there: lead of the pinion's base circle over the gear's", LENGTH),
+    Quantity("initial_pinion_lead", "u + e there: lead of the pinion's base circle over the gear's", LENGTH),
     Quantity(
         "mesh_mark_below",
         "phase of the nearest mesh entry or exit below the present one",

@@ -31,9 +31,9 @@ MATERIAL: Final = record_type(
 
 COVERAGE: Final = record_type(  # of one side's flanks
     ("teeth", INT),  # rows of the table, one after the other: of each tooth, or one for all [1]
-    ("places", INT),  # fractions in each, at equal parts of the path of contact [1]
+    ("positions", INT),  # fractions in each, at equal parts of the path of contact [1]
     ("values_at", INT),  # the table among the tables [index]
-    ("place_scale", REAL),  # fractions in a pitch [1/pb]
+    ("position_scale", REAL),  # fractions in a pitch [1/pb]
 )
 
 TORQUE: Final = record_type(  # of a shaft
@@ -77,8 +77,8 @@ POPULATION: Final = record_type(
 )
 
 FRICTION: Final = record_type(  # of flanks and joints: hubs and the pin of a drive
-    ("on", INT),  # 1 if anything dry resists: flanks, joints or the load
-    ("rubs", INT),  # 1 if flanks or joints do, or the loads of joints are followed
+    ("any_dry", INT),  # 1 if anything dry resists: flanks, joints or the load
+    ("any_friction", INT),  # 1 if flanks or joints do, or the loads of joints are followed
     ("flanks", INT),  # 1 if flanks have
     ("joints", INT),  # 1 if a joint has a radius, so that loads are followed
     ("hubs", INT),  # 1 if a hub has friction that grows with its load
@@ -95,8 +95,8 @@ FRICTION: Final = record_type(  # of flanks and joints: hubs and the pin of a dr
     ("pinion_lever", REAL),  # base pitch over the pinion's base radius [1]
     ("gear_lever", REAL),  # base pitch over the gear's base radius [1]
     ("radii", REAL),  # sum of both radii of curvature [pb]
-    ("pinion_bend", REAL),  # sigma over the pinion's base radius [1]
-    ("gear_bend", REAL),  # sigma over the gear's base radius [1]
+    ("pinion_lever_slope", REAL),  # sigma over the pinion's base radius [1]
+    ("gear_lever_slope", REAL),  # sigma over the gear's base radius [1]
     ("pinion_hub", REAL),  # sliding coefficient times radius of the pinion's hub over its base radius [1]
     ("gear_hub", REAL),  # the same of the gear [1]
     ("pin", REAL),  # the same of the pin, over the pinion's base radius [1]
@@ -122,7 +122,10 @@ FRICTION: Final = record_type(  # of flanks and joints: hubs and the pin of a dr
     ("pin_sine", REAL),  # of that angle, per newton [F/N]
     ("cosine", REAL),  # of twice the pressure angle [1]
     ("sine", REAL),  # of twice the pressure angle [1]
-    ("blur", REAL),  # error of the transmission error within which the force of a pair is known [sigma]
+    (
+        "gap_tolerance",
+        REAL,
+    ),  # error of the transmission error within which the force of a pair is known [sigma]
 )
 
 FOLLOW: Final = record_type(  # 1 for each observer of the run that is wanted
@@ -177,10 +180,16 @@ SCENE: Final = record_type(
     ("lowest_gap", REAL),  # the model holds above this gap of a pair [sigma]
     ("light_gap", REAL),  # gap in the middle of elastic contacts above which rigid ones would do [sigma]
     ("material", MATERIAL, (MATERIALS,)),
-    ("by_place", INT),  # 1 where shares change with tooth and position and are not in the force scales
+    (
+        "covered_by_position",
+        INT,
+    ),  # 1 where shares change with tooth and position and are not in the force scales
     ("patches", INT),  # 1 where the pinion's fractions are those of the interface
     ("coverage", COVERAGE, (2,)),  # of the pinion and of the gear
-    ("loading_at", INT),  # loading branch of all materials, or with `by_place` of each, in forces [index]
+    (
+        "loading_at",
+        INT,
+    ),  # loading branch of all materials, or with `covered_by_position` of each, in forces [index]
     ("potential_at", INT),  # potentials of these branches [index]
     ("slots", INT),  # histories per flank in use, a power of two [1]
     ("histories", INT),  # histories of all flanks [1]
@@ -239,10 +248,10 @@ SCENE: Final = record_type(
     ("law_switches", INT),  # 1 if a law has a function whose zeros are where it switches
     ("law_watched", INT),  # 1 if it has, or says nothing of where it jumps, so that each step looks at it
     (
-        "rest_look",
+        "rest_search_step",
         REAL,
     ),  # longest time between two looks at the torques of what is held; infinite for any [tau]
-    ("rest_bend", REAL),  # bound of the second derivative of their harmonics [F/tau^2]
+    ("rest_margin_curvature", REAL),  # bound of the second derivative of their harmonics [F/tau^2]
     ("common_period", REAL),  # of all harmonics; 0 if they have none [tau]
     ("free_step", REAL),  # longest step of free gears, whatever the tolerance; 0 for any [tau]
     ("angle_omega", REAL),  # highest angular frequency of the torques of an angle [rad/pb]

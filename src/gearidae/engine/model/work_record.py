@@ -115,7 +115,7 @@ POINT: Final = record_type(  # of an accepted time, what extremes are located fr
     ("time", REAL),  # [tau]
     ("travel", REAL),  # transmission error, or height [sigma]
     ("travel_rate", REAL),  # [sigma/tau]
-    ("travel_bend", REAL),  # [sigma/tau^2]
+    ("travel_acceleration", REAL),  # [sigma/tau^2]
     ("speed", REAL),  # of the gear [sigma/tau]
     ("speed_rate", REAL),  # [sigma/tau^2]
     ("position", REAL),  # how far the gear has turned [pb]
@@ -230,7 +230,7 @@ ELEMENT: Final = record_type(  # that dry friction may hold at rest
     ("gear", REAL),  # and of the gear [1]
     ("limit", REAL),  # of its friction, without what grows with the load of a hub [F]
     ("hub", REAL),  # what its limit grows by with the load of its hub [1]
-    ("coast", INT),  # 1 for a pair of the coast flank
+    ("flank", INT),  # 1 for a pair of the coast flank
     ("hold", INT),  # `HELD_PAIR`, `HELD_GEAR` or `HELD_PINION`
     ("history", INT),  # of a pair [index]
 )
@@ -269,21 +269,21 @@ CONTACT: Final = record_type(  # of a population: the candidates of a pair
     ("start_moves", INT),  # 1 where it was on the path of contact then
     ("start_gap", REAL),  # its gap then [sigma]
     ("start_rate", REAL),  # its gap rate then [sigma/tau]
-    ("start_place", REAL),  # its position along the path then [pb]
-    ("start_place_rate", REAL),  # the rate of that [pb/tau]
+    ("start_position", REAL),  # its position along the path then [pb]
+    ("start_position_rate", REAL),  # the rate of that [pb/tau]
 )
 
 MESH_ERROR: Final = record_type(  # the last evaluation of the error of the mesh
     ("known", INT),  # 1 if there has been one
     ("u", REAL),  # state of which it is [sigma]
     ("phase", REAL),  # [pb]
-    ("turns", REAL),  # [pb]
+    ("whole_pitches", REAL),  # [pb]
     ("angle", REAL),  # of the pinion [rad]
     ("value", REAL),  # [sigma]
     ("pinion", REAL),  # derivatives in the pinion's angle [1]
-    ("pinion_bend", REAL),  # [1/sigma]
+    ("pinion_curvature", REAL),  # [1/sigma]
     ("gear", REAL),  # and in the gear's [1]
-    ("gear_bend", REAL),  # [1/sigma]
+    ("gear_curvature", REAL),  # [1/sigma]
 )
 
 PITCH_ERROR: Final = record_type(  # of the teeth of a pair, as last looked up
@@ -298,9 +298,9 @@ ORBIT: Final = record_type(  # of the pinion in its hub, at the time that is loo
     ("time", REAL),  # [tau]
     ("error", REAL),  # what it adds to the error of the mesh [sigma]
     ("error_rate", REAL),  # [sigma/tau]
-    ("error_bend", REAL),  # [sigma/tau^2]
+    ("error_acceleration", REAL),  # [sigma/tau^2]
     ("play_rate", REAL),  # rate of what it adds to the gap of the coast flank besides u [sigma/tau]
-    ("play_bend", REAL),  # [sigma/tau^2]
+    ("play_acceleration", REAL),  # [sigma/tau^2]
     ("origin", REAL),  # of the values that a polynomial goes through [tau]
     ("step", REAL),  # between them; 0 before there are any [tau]
     ("value", REAL, (2, 6)),  # their divided differences: of the error and of the coast gap [sigma]
@@ -314,7 +314,7 @@ WORK: Final = record_type(
     ("resistance", RESISTANCE),  # of the energy balance
     ("energy_now", record_type(*ENERGY_NOW)),  # of a look at the energy balance
     ("track", TRACK),  # of the extremes
-    ("lag_time", REAL),  # time to which the lags of joining are followed [tau]
+    ("adhesion_lag_time", REAL),  # time to which the lags of joining are followed [tau]
     ("exposing", EXPOSING),  # of the exposures
     ("known", INT, (2 * SLOTS_HIGH,)),  # histories of the pairs that have been listed last [index]
     ("pair_forces", NOTES),  # forces of single pairs

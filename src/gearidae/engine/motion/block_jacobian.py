@@ -21,8 +21,8 @@ from typing import Final
 import numpy as np
 
 from gearidae.compiled import compiled
+from gearidae.engine.elastic.node_rows import node_weights
 from gearidae.engine.elastic.nodes import influence, stiffness_matrix
-from gearidae.engine.elastic.rows import node_weights
 from gearidae.engine.friction.pairs import direction, levers
 from gearidae.engine.model.state import MOTION, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.residual import motion_slopes, write_jacobian

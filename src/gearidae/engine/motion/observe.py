@@ -9,7 +9,7 @@ import math
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.elastic.rows import first_unknown
+from gearidae.engine.elastic.node_rows import first_unknown
 from gearidae.engine.friction.ageing import coefficients
 from gearidae.engine.laws.discrete import asperities_joined
 from gearidae.engine.laws.pairs import mesh_force
@@ -61,14 +61,14 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
             row[ROLLER.min_separation] = separation(m, y) * length
         return
     phase, w = y[PHASE], y[W]
-    (turn, e), radius = pinion_speed(m, y), m.scene.gear_radius
+    (surface_speed, e), radius = pinion_speed(m, y), m.scene.gear_radius
     row[GEAR.gear_speed] = w * speed / radius
-    row[GEAR.pinion_speed] = turn * speed / m.scene.pinion_radius
+    row[GEAR.pinion_speed] = surface_speed * speed / m.scene.pinion_radius
     row[GEAR.gear_angle] = angle_of_shaft(m, LOAD, u, phase)
     row[GEAR.transmission_error] = u * length
     row[GEAR.mesh_force] = force * m.scene.force_unit
     contact, width = (1.0 + e.gear) * force + mesh.relief, row.size - m.scene.law_columns
-    if m.scene.friction.rubs != 0:
+    if m.scene.friction.any_friction != 0:
         friction, resistance, loads = friction_at_gear(m, t, y)
         contact += friction
         width -= _write_joints(m, loads, t, y, row[:width])
@@ -81,13 +81,15 @@ def observe(m: Model, t: float, y: Floats, row: Floats) -> None:
     row[GEAR.drive_gap], row[GEAR.coast_gap] = drive_gap * length, coast_gap * length
     row[GEAR.pairs_in_contact] = touching
     unit = m.scene.force_unit
-    drive = driving_force(m, DRIVE, t, torque_angle(m, DRIVE, u, phase), turn)
+    drive = driving_force(m, DRIVE, t, torque_angle(m, DRIVE, u, phase), surface_speed)
     row[GEAR.drive_torque] = drive * unit * m.scene.pinion_radius
     row[GEAR.load_torque] = resistance * unit * radius
     row[GEAR.pinion_angle] = angle_of_shaft(m, DRIVE, u, phase)
     if m.scene.law_columns != 0:
-        place = write_samples(m, DRIVE, t, row[GEAR.pinion_angle], turn, row, row.size - m.scene.law_columns)
-        write_samples(m, LOAD, t, row[GEAR.gear_angle], w, row, place)
+        column = write_samples(
+            m, DRIVE, t, row[GEAR.pinion_angle], surface_speed, row, row.size - m.scene.law_columns
+        )
+        write_samples(m, LOAD, t, row[GEAR.gear_angle], w, row, column)
     if m.scene.population.flanks != 0:
         row[GEAR_POPULATION.asperities_in_contact], row[GEAR.pairs_in_contact] = asperities_joined(m)
     elif width > GEAR.min_separation:
@@ -118,9 +120,9 @@ def separation(m: Model, y: Floats) -> float:
     least = math.inf
     reach = all_pairs(m, y)
     for i in range(reach.total):
-        coast, pair = pair_at(reach, i)
-        k = history_of(m, coast, pair)
-        gap, _ = gap_and_rate(m, coast, pair, y)
+        flank, pair = pair_at(reach, i)
+        k = history_of(m, flank, pair)
+        gap, _ = gap_and_rate(m, flank, pair, y)
         if not in_reach(m, gap) or m.state.history[k].pair != pair:
             least = min(least, gap)
             continue

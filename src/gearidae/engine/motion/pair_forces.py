@@ -7,7 +7,7 @@ import numpy as np
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import FRICTION, SOLVER
 from gearidae.engine.elastic.limits import limit_of_nodes
-from gearidae.engine.elastic.rows import first_unknown
+from gearidae.engine.elastic.node_rows import first_unknown
 from gearidae.engine.elastic.static_condensation import (
     FINISH,
     PREDICT,
@@ -54,8 +54,8 @@ def mesh_forces(m: Model, t: float, y: Floats, settling: bool) -> MeshForces:
     full = with_deflections(m, y) if m.scene.nodes > 0 and settling else y
     reach = pairs_felt(m, y)
     for i in range(reach.total):
-        coast, number = pair_at(reach, i)
-        pair = state_of_pair(m, coast, number, y)
+        flank, number = pair_at(reach, i)
+        pair = state_of_pair(m, flank, number, y)
         if acts(m, pair):
             force = force_of_pair(m, t, full, pair, settling)
             if m.scene.noting != 0:
@@ -71,10 +71,10 @@ def forces_at(m: Model, t: float, y: Floats) -> MeshForces:
 
 
 @compiled_once(SOLVER)
-def force_of_one(m: Model, t: float, y: Floats, coast: int, number: int) -> float:
+def force_of_one(m: Model, t: float, y: Floats, flank: int, number: int) -> float:
     """Force of a single pair along the line of action by all laws of the scene, positive where its flanks push."""
     follow_orbit(m, t)
-    pair = state_of_pair(m, coast, number, y)
+    pair = state_of_pair(m, flank, number, y)
     return force_of_pair(m, t, y, pair, False).load if acts(m, pair) else 0.0
 
 
@@ -147,12 +147,12 @@ def _ask_for_deflections(m: Model, t: float, y: Floats, kind: int) -> None:
         y[j] = 0.0
     reach = pairs_touching(m, y)
     for i in range(reach.total):
-        coast, number = pair_at(reach, i)
-        pair = pair_state(m, coast, number, y)
+        flank, number = pair_at(reach, i)
+        pair = pair_state(m, flank, number, y)
         if acts(m, pair):
             m.work.settling[pair.k].reached = 1
-            note_shares(m, pair.k, coast, number, pair.place)
-            pair_deflections(m, kind, t, y, pair, contact_length(m, pair.place))
+            note_shares(m, pair.k, flank, number, pair.position)
+            pair_deflections(m, kind, t, y, pair, contact_length(m, pair.position))
 
 
 @compiled(inline=True)
@@ -160,10 +160,10 @@ def note_pair_force(m: Model, pair: PairState, f: PairForce) -> None:
     """Note a pair and its force."""
     notes = m.work.pair_forces
     noted = notes.pair[notes.count]
-    noted.history, noted.pair, noted.position = pair.k, pair.number, pair.place
+    noted.history, noted.pair, noted.position = pair.k, pair.number, pair.position
     noted.gap, noted.gap_rate, noted.relief = pair.gap, pair.rate, pair.slope
-    noted.force, noted.slope, noted.drift = f.load, f.by_gap, f.by_place * pair.place_rate
+    noted.force, noted.slope, noted.drift = f.load, f.by_gap, f.by_position * pair.position_rate
     noted.contact, noted.contact_slope, noted.damping = f.contact, f.contact_by_gap, f.by_rate
     noted.limit, noted.limit_slope = f.limit, f.limit_by_gap
-    noted.limit_rate = f.limit_by_place * pair.place_rate + f.limit_by_gap * pair.rate
+    noted.limit_rate = f.limit_by_position * pair.position_rate + f.limit_by_gap * pair.rate
     notes.count += 1

@@ -41,7 +41,11 @@ def motion(m: Model, t: float, y: Floats, yp: Floats, out: Floats, settling: boo
     s = shafts_at(m, t, y, mesh)
     pinion, gear = accelerations(m, t, y, s)
     out[V] = yp[V] + (1.0 + s.error.gear) * yp[W] - (1.0 - s.error.pinion) * pinion
-    out[V] += s.error.pinion_bend * s.turn * s.turn + s.error.gear_bend * y[W] * y[W] + s.error.bend
+    out[V] += (
+        s.error.pinion_curvature * s.surface_speed * s.surface_speed
+        + s.error.gear_curvature * y[W] * y[W]
+        + s.error.acceleration
+    )
     out[PHASE], out[W] = yp[PHASE] - m.scene.phase_rate * y[W], yp[W] - gear
     return mesh
 
@@ -66,7 +70,7 @@ def residual(m: Model, t: float, y: Floats, yp: Floats, out: Floats) -> None:
 def motion_slopes(m: Model, t: float, y: Floats) -> AccelerationSlopes:
     """Slopes of the accelerations at a state, at fixed deflections; the forces of the pairs are noted."""
     mesh = mesh_forces(m, t, y, False)
-    if m.scene.friction.rubs != 0:
+    if m.scene.friction.any_friction != 0:
         note_limits(m, t, y)
     return acceleration_slopes(m, y, mesh)
 

@@ -33,7 +33,7 @@ class Shafts(NamedTuple):
 
     Attributes
     ----------
-    turn : float
+    surface_speed : float
         Surface velocity of the pinion.
     pinion, gear : float
         Forces at the base circles.
@@ -41,7 +41,7 @@ class Shafts(NamedTuple):
         Of the mesh.
     """
 
-    turn: float
+    surface_speed: float
     pinion: float
     gear: float
     error: MeshError
@@ -51,9 +51,9 @@ class Shafts(NamedTuple):
 def shafts_at(m: Model, t: float, y: Floats, mesh: MeshForces) -> Shafts:
     """Put the forces of the mesh, its damping and the torques on the pinion on both shafts."""
     force = mesh_force(m, y[V], mesh.force)
-    turn, e = speed_and_error(m, y)
-    drive = pinion_force(m, t, torque_angle(m, DRIVE, y[U], y[PHASE]), turn)
-    return Shafts(turn, drive - (1.0 - e.pinion) * force, (1.0 + e.gear) * force + mesh.relief, e)
+    surface_speed, e = speed_and_error(m, y)
+    drive = pinion_force(m, t, torque_angle(m, DRIVE, y[U], y[PHASE]), surface_speed)
+    return Shafts(surface_speed, drive - (1.0 - e.pinion) * force, (1.0 + e.gear) * force + mesh.relief, e)
 
 
 @compiled(inline=True)
@@ -65,8 +65,8 @@ def resisting_force(m: Model, t: float, y: Floats) -> float:
 @compiled(inline=True)
 def accelerations(m: Model, t: float, y: Floats, s: Shafts) -> tuple[float, float]:
     """Accelerations of both base circles, with friction and the resistance at the gear."""
-    if m.scene.friction.rubs != 0:
-        return rubbed_accelerations(m, t, y, s.turn, s.pinion, s.gear)
+    if m.scene.friction.any_friction != 0:
+        return rubbed_accelerations(m, t, y, s.surface_speed, s.pinion, s.gear)
     pinion, gear = m.scene.pinion_inverse_mass * s.pinion, 0.0
     if m.state.hold == FREE:
         gear = m.scene.gear_inverse_mass * (s.gear - resisting_force(m, t, y))
@@ -139,18 +139,18 @@ def acceleration_slopes(m: Model, y: Floats, mesh: MeshForces) -> AccelerationSl
         0.0,
         0.0,
     )
-    if m.scene.friction.rubs != 0:
+    if m.scene.friction.any_friction != 0:
         f = _friction_slopes(m, y)
-    turn, damping = y[V] + y[W], mesh_by_rate(m, 0.0)
+    surface_speed, damping = y[V] + y[W], mesh_by_rate(m, 0.0)
     pinion_u, pinion_phase = f.pinion_u - mesh.force_u, f.pinion_phase - mesh.force_phase
     angle = torque_angle(m, DRIVE, y[U], y[PHASE])
-    own_speed = by_speed(m, DRIVE, angle, turn, -0.0)
+    own_speed = by_speed(m, DRIVE, angle, surface_speed, -0.0)
     pinion_v, pinion_w = own_speed - (damping + mesh.force_v), own_speed - mesh.force_w
     gear_u = f.gear_u + mesh.force_u + mesh.relief_u
     gear_phase = f.gear_phase + mesh.force_phase + mesh.relief_phase
     gear_v = damping + mesh.force_v + mesh.relief_v
     if m.scene.torque[DRIVE].takes_angle != 0:
-        of_travel = by_angle(m, DRIVE, angle, turn, -0.0) * m.scene.torque[DRIVE].angle_unit
+        of_travel = by_angle(m, DRIVE, angle, surface_speed, -0.0) * m.scene.torque[DRIVE].angle_unit
         pinion_u += of_travel
         pinion_phase += of_travel / m.scene.phase_rate
     angle = torque_angle(m, LOAD, y[U], y[PHASE])
@@ -188,7 +188,7 @@ def forces_at_shafts(m: Model, t: float, y: Floats) -> tuple[float, float, float
     """
     s = shafts_at(m, t, y, forces_at(m, t, y))
     set_limits(m, t, y[W])
-    return s.turn, s.pinion, with_acting(m, t, y, s.gear)
+    return s.surface_speed, s.pinion, with_acting(m, t, y, s.gear)
 
 
 @compiled_once(FRICTION)
@@ -198,8 +198,8 @@ def friction_at_gear(m: Model, t: float, y: Floats) -> tuple[float, float, tuple
     What acts on its shaft and dry resistance resist it. At rest, where the shares of several elements are not unique,
     the flanks' friction is zero and the dry resistance takes what it can.
     """
-    turn, pinion, gear = forces_at_shafts(m, t, y)
-    shafts = solve_shafts(m, t, y, turn, pinion, gear)
+    surface_speed, pinion, gear = forces_at_shafts(m, t, y)
+    shafts = solve_shafts(m, t, y, surface_speed, pinion, gear)
     loads = shafts.loads.pinion, shafts.loads.gear, math.hypot(shafts.pin[0], shafts.pin[1])
     friction = 0.0
     for i in range(m.work.pair_forces.count if m.scene.friction.flanks != 0 else 0):

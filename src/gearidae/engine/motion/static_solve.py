@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
+from gearidae.engine.elastic.node_rows import GAP, PRESSURE, first_unknown, profile_of, row_of
 from gearidae.engine.elastic.nodes import influence, node_force, stiffness_matrix
-from gearidae.engine.elastic.rows import GAP, PRESSURE, first_unknown, profile_of, row_of
 from gearidae.engine.model.state import EMPTY, PHASE, Floats, Model
 from gearidae.engine.motion.residual import residual
 from gearidae.engine.pairs.coverage import path_position

@@ -33,7 +33,7 @@ from gearidae.laws.pair_law import in_reach
 @compiled(inline=True)
 def begin(m: Model, t: float) -> None:
     """Begin to follow the lags at a start."""
-    m.work.lag_time = t
+    m.work.adhesion_lag_time = t
 
 
 @compiled(inline=True)
@@ -51,42 +51,44 @@ def step(m: Model, t: float, y: Floats, w_rate: float) -> None:
     w_rate : float
         Acceleration of the gear's surface there.
     """
-    h = t - m.work.lag_time
+    h = t - m.work.adhesion_lag_time
     if h > 0.0:
-        m.work.lag_time = t
+        m.work.adhesion_lag_time = t
         _follow_pairs(m, h, y, w_rate)
 
 
 @compiled_once(SOLVER)
-def event(m: Model, y: Floats, coast: int, pair: int, k: int, gap: float) -> None:
+def event(m: Model, y: Floats, flank: int, pair: int, k: int, gap: float) -> None:
     """Add the adhesion loss of a pair's asperities, before the turning point of a closing contact is noted."""
     if m.state.history[k].direction > 0.0:
         return
     e, losses = m.state.energy, joining_losses(m, k, y, gap)[0]
-    lag, inside = m.state.history[k].lag, path_position(m, coast, pair, y[PHASE])
-    e.adhesion_loss += contact_length(m, inside) * weighed(shares_of(m, coast, pair, inside), losses) - lag
+    adhesion_lag, inside = m.state.history[k].adhesion_lag, path_position(m, flank, pair, y[PHASE])
+    e.adhesion_loss += (
+        contact_length(m, inside) * weighed(shares_of(m, flank, pair, inside), losses) - adhesion_lag
+    )
     if m.scene.curvature_force == 0:
-        e.radius_work -= lag
+        e.radius_work -= adhesion_lag
         if m.scene.nodes == 0:
-            _accumulate_before(m, coast, pair, y[PHASE], losses)
+            _accumulate_before(m, flank, pair, y[PHASE], losses)
 
 
 @compiled
-def _accumulate_before(m: Model, coast: int, pair: int, phase: float, losses: Shares) -> None:
+def _accumulate_before(m: Model, flank: int, pair: int, phase: float, losses: Shares) -> None:
     """Keep the power of the changing radius continuous where adhesion losses per length have been added.
 
     From then on it lacks the losses times the rates of the lengths. They are taken out where the quadrature began, too,
     and what that leaves out until now is the losses times what the lengths have changed by.
     """
-    first, last = pairs_on_path(m, coast)
-    if m.state.flank_in_reach[coast] == 0 or not first <= pair <= last:
+    first, last = pairs_on_path(m, flank)
+    if m.state.flank_in_reach[flank] == 0 or not first <= pair <= last:
         return
     q = m.work.quadrature
     before = q.gear_travel * m.scene.phase_rate
-    then = weighed_length(m, (coast, pair, before), q.gear_speed, q.gear_acceleration, losses, NONE)
+    then = weighed_length(m, (flank, pair, before), q.gear_speed, q.gear_acceleration, losses, NONE)
     q.radius_power -= then.rate
-    q.radius_power_rate -= then.bend
-    now = weighed_length(m, (coast, pair, phase), 0.0, 0.0, losses, NONE)
+    q.radius_power_rate -= then.second_rate
+    now = weighed_length(m, (flank, pair, phase), 0.0, 0.0, losses, NONE)
     q.length_work += now.length - then.length
 
 
@@ -101,23 +103,23 @@ def _follow_pairs(m: Model, span: float, y: Floats, w_rate: float) -> None:
     """Follow the lags of contacts that close over a span of time."""
     for i in range(list_known(m, y)):
         k = m.work.known[i]
-        coast, h = flank_of_history(m, k), m.state.history[k]
-        gap = path_gap(m, coast, h.pair, y)
-        if h.direction >= 0.0 or not in_reach(m, gap) or not is_on_path(m, coast, h.pair):
+        flank, h = flank_of_history(m, k), m.state.history[k]
+        gap = path_gap(m, flank, h.pair, y)
+        if h.direction >= 0.0 or not in_reach(m, gap) or not is_on_path(m, flank, h.pair):
             continue
         power = rate = 0.0
         losses, slopes = joining_losses(m, k, y, gap)
         if losses[0] != 0.0 or losses[1] != 0.0 or losses[2] != 0.0:
-            loss = weighed_length(m, (coast, h.pair, y[PHASE]), y[W], w_rate, losses, slopes)
-            power, rate = loss.rate, loss.bend + opening_of(m, coast, y[V]) * loss.by_gap
-        h.lag += integral(span, h.lag_power, power, h.lag_rate, rate)
-        h.lag_power, h.lag_rate = power, rate
+            loss = weighed_length(m, (flank, h.pair, y[PHASE]), y[W], w_rate, losses, slopes)
+            power, rate = loss.rate, loss.second_rate + opening_of(m, flank, y[V]) * loss.by_gap
+        h.adhesion_lag += integral(span, h.adhesion_lag_power, power, h.adhesion_lag_power_rate, rate)
+        h.adhesion_lag_power, h.adhesion_lag_power_rate = power, rate
 
 
 @compiled
-def joining_lag(m: Model) -> float:
+def total_adhesion_lag(m: Model) -> float:
     """Sum of the lags of all contacts that close."""
-    lag = 0.0
+    adhesion_lag = 0.0
     for k in range(m.scene.histories):
-        lag += m.state.history[k].lag
-    return lag
+        adhesion_lag += m.state.history[k].adhesion_lag
+    return adhesion_lag

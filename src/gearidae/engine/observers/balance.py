@@ -43,7 +43,7 @@ from gearidae.engine.laws.pairs import LOSING, book_losses_of_mesh, radius_power
 from gearidae.engine.model.addresses import model_at
 from gearidae.engine.model.state import DRIVE, LOAD, MATERIALS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.kinetic import energy_of_speeds, kinetic_energy
-from gearidae.engine.observers.adhesion_loss import joining_lag
+from gearidae.engine.observers.adhesion_loss import total_adhesion_lag
 from gearidae.engine.observers.orbit_work import begin_orbit, book_orbit
 from gearidae.engine.pairs.mesh_error import pinion_acceleration, speed_and_error
 from gearidae.engine.pairs.orbit import follow_orbit
@@ -68,9 +68,9 @@ ORDER: Final = 4
 
 
 @compiled
-def open_balance(place: int, y: Floats) -> None:
+def open_balance(address: int, y: Floats) -> None:
     """Note the energies at the start; the kinetic energy counts as exchanged, as speeds have absolute tolerances."""
-    m = model_at(place)
+    m = model_at(address)
     e = m.state.energy
     e.start_stored = stored_energy(m, y)[0]
     e.start_shafts = _stored_in_shafts(m, y)
@@ -162,7 +162,7 @@ def _can_wait(m: Model, t: float, y: Floats) -> bool:
     """
     if m.scene.nodes > 0 or m.state.bound_exceeded != 0:
         return False
-    if m.scene.population.flanks != 0 or m.scene.friction.rubs != 0:  # forces jump
+    if m.scene.population.flanks != 0 or m.scene.friction.any_friction != 0:  # forces jump
         return False
     if m.scene.guarded != 0 or m.scene.law_switches != 0:  # torques do
         return False
@@ -314,10 +314,10 @@ def _accumulate_losses(m: Model, t: float, y: Floats, yp: Floats) -> None:
     if h == 0.0:
         return
     gear, w, w_rate = y[PHASE] / m.scene.phase_rate, y[W], yp[W]
-    e, turn = m.state.energy, Ends(r.gear_speed, r.gear_acceleration, w, w_rate)
+    e, speeds = m.state.energy, Ends(r.gear_speed, r.gear_acceleration, w, w_rate)
     taken = 0.0
     if m.scene.torque[LOAD].acts != 0:
-        taken = book_losses(m, LOAD, h, torque_angle(m, LOAD, y[U], y[PHASE]), gear - r.gear_travel, turn)
+        taken = book_losses(m, LOAD, h, torque_angle(m, LOAD, y[U], y[PHASE]), gear - r.gear_travel, speeds)
     if m.scene.torque[DRIVE].acts != 0:
         travel, speed, acceleration = _pinion(m, y, yp)
         ends = Ends(r.pinion_speed, r.pinion_acceleration, speed, acceleration)
@@ -346,15 +346,15 @@ def _note_resistance(m: Model, t: float, gear: float, y: Floats, yp: Floats) -> 
 def note_changes(m: Model, y: Floats) -> tuple[float, float]:
     """Note the changes of the energies at a state, and return what adhesion loss and radius work have pending there."""
     e, now = m.state.energy, m.work.energy_now
-    (stored, pending), lag = stored_energy(m, y), joining_lag(m)
+    (stored, pending), adhesion_lag = stored_energy(m, y), total_adhesion_lag(m)
     now.stored_change = stored - pending - e.start_stored
     now.shaft_change = _stored_in_shafts(m, y) - e.start_shafts
     now.kinetic_change = kinetic_energy(m, y) - e.start_kinetic
-    return pending - lag, -lag if m.scene.curvature_force == 0 else 0.0
+    return pending - adhesion_lag, -adhesion_lag if m.scene.curvature_force == 0 else 0.0
 
 
 @compiled
-def look(m: Model, t: float, y: Floats) -> None:
+def note_present(m: Model, t: float, y: Floats) -> None:
     """Add to the sums, for a look at them, what contacts have pending, and note the present energies.
 
     Parameters

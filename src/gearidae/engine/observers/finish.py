@@ -6,8 +6,8 @@ from gearidae.compiled import compiled
 from gearidae.engine.model.addresses import model_at
 from gearidae.engine.model.state import Floats, Model
 from gearidae.engine.observers import balance
-from gearidae.engine.observers.exposures import follow as exposures
-from gearidae.engine.observers.extremes import follow as extremes
+from gearidae.engine.observers.exposures import accumulation as exposures
+from gearidae.engine.observers.extremes import extrema as extremes
 from gearidae.engine.pairs.orbit import follow_orbit
 
 
@@ -21,22 +21,22 @@ def finish_account(m: Model, t: float, y: Floats, yp: Floats) -> None:
 
 
 @compiled
-def look_at(place: int, t: float, y: Floats, yp: Floats) -> None:
+def finish_for_look(address: int, t: float, y: Floats, yp: Floats) -> None:
     """Finish as for the end of a run, of which the last state may be an extreme.
 
     Parameters
     ----------
-    place : int
+    address : int
         Of the model, from `gearidae.engine.model.addresses.Addresses`.
     t : float
         Time over tau.
     y, yp : ndarray, shape (n,)
         State there, and its rate.
     """
-    m = model_at(place)
+    m = model_at(address)
     follow_orbit(m, t)
     finish_account(m, t, y, yp)
     if m.scene.follow.extremes != 0:
         extremes.note_present(m, y)
     if m.scene.follow.balance != 0:
-        balance.look(m, t, y)
+        balance.note_present(m, t, y)

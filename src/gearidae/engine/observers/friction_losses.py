@@ -29,7 +29,7 @@ from gearidae.engine.observers.exposures.friction_work import (
     keeps_friction_work,
     note_power,
 )
-from gearidae.engine.pairs.mesh_error import bend_of, error_at
+from gearidae.engine.pairs.mesh_error import acceleration_of, error_at
 from gearidae.engine.pairs.tooth_pairs import flank_of_history
 from gearidae.formulas.quadrature import error_estimate, integral, integral_with_middle
 
@@ -51,11 +51,11 @@ def note_friction(m: Model, t: float, y: Floats) -> float:
     """
     rolls = m.scene.friction.joints != 0 and m.state.hold == HELD_PAIR
     ahead = _loads_ahead(m, t, y) if rolls else Loads(0.0, 0.0)
-    turn, pinion, gear = forces_at_shafts(m, t, y)
+    surface_speed, pinion, gear = forces_at_shafts(m, t, y)
     if m.scene.nodes > 0:
         follow_slopes(m, t, y, 0.0, y)
         set_limits(m, t, y[W])
-    shafts = solve_shafts(m, t, y, turn, pinion, gear)
+    shafts = solve_shafts(m, t, y, surface_speed, pinion, gear)
     r = m.work.friction
     r.time, force = t, mesh_force(m, y[V], shafts.mesh.drive - shafts.mesh.coast)
     for which in range(_POWERS):
@@ -68,8 +68,8 @@ def note_friction(m: Model, t: float, y: Floats) -> float:
         first, second = levers(m, noted.position)
         slip = direction(m, noted) if m.scene.friction.flanks != 0 else 0.0
         friction, rate = slip * noted.limit, slip * noted.limit_rate
-        speed = first * turn - second * y[W]
-        speed_rate = first * shafts.pinion - second * shafts.gear + lever_rate(m, noted, turn, y[W])
+        speed = first * surface_speed - second * y[W]
+        speed_rate = first * shafts.pinion - second * shafts.gear + lever_rate(m, noted, surface_speed, y[W])
         power, power_rate = friction * speed, rate * speed + friction * speed_rate
         r.power[flank] += power
         r.power_rate[flank] += power_rate
@@ -81,7 +81,7 @@ def note_friction(m: Model, t: float, y: Floats) -> float:
             drive += noted.force_rate
             drive_friction += rate
     if m.scene.friction.joints != 0:
-        force_rate = pin_rate(m, t, y, turn, shafts.pinion)
+        force_rate = pin_rate(m, t, y, surface_speed, shafts.pinion)
         if rolls:
             load_rate = Loads(
                 (ahead.pinion - shafts.loads.pinion) / _AHEAD, (ahead.gear - shafts.loads.gear) / _AHEAD
@@ -89,7 +89,7 @@ def note_friction(m: Model, t: float, y: Floats) -> float:
         else:
             load_rate = _load_rate(m, shafts, Mesh(drive, coast, drive_friction, coast_friction), force_rate)
         joints = joint_friction(m, t, y), joint_friction_rate(m, t, y)
-        _note_joints(m, shafts, joints, load_rate, force_rate, turn, y[W])
+        _note_joints(m, shafts, joints, load_rate, force_rate, surface_speed, y[W])
     return float(force)
 
 
@@ -100,7 +100,7 @@ def _note_joints(
     friction_and_rate: tuple[JointFriction, JointFriction],
     load_rate: Loads,
     force_rate: tuple[float, float],
-    turn: float,
+    surface_speed: float,
     w: float,
 ) -> None:
     """Note the powers of hubs and pin, for the rates of their friction, their loads and the force of the pin."""
@@ -109,7 +109,7 @@ def _note_joints(
     pin_load_rate = 0.0
     if pin > 0.0:
         pin_load_rate = (shafts.pin[0] * force_rate[0] + shafts.pin[1] * force_rate[1]) / pin
-    turns, gear_turns = math.copysign(1.0, turn), math.copysign(1.0, w)
+    turns, gear_turns = math.copysign(1.0, surface_speed), math.copysign(1.0, w)
     slip, gear_slip = m.state.pinion_slip, m.state.slip if friction.gear_rubs != 0 else 0.0
     pinion, gear = joints.pinion_hub * shafts.loads.pinion, joints.gear_hub * shafts.loads.gear
     pinion_rate = rate.pinion_hub * shafts.loads.pinion + rate.pinion_constant
@@ -119,7 +119,7 @@ def _note_joints(
         2,
         slip * (pinion + joints.pinion_constant),
         slip * (joints.pinion_hub * load_rate.pinion + pinion_rate),
-        turn,
+        surface_speed,
         shafts.pinion,
     )
     _note(
@@ -131,11 +131,11 @@ def _note_joints(
         shafts.gear,
     )
     pin_friction_rate = joints.pin * pin_load_rate + rate.pin * pin
-    _note(m, 4, slip * joints.pin * pin, slip * pin_friction_rate, turn, shafts.pinion)
+    _note(m, 4, slip * joints.pin * pin, slip * pin_friction_rate, surface_speed, shafts.pinion)
     arms = turns * friction.pinion_arm, gear_turns * friction.gear_arm, turns * friction.pin_arm
-    _note(m, 5, arms[0] * shafts.loads.pinion, arms[0] * load_rate.pinion, turn, shafts.pinion)
+    _note(m, 5, arms[0] * shafts.loads.pinion, arms[0] * load_rate.pinion, surface_speed, shafts.pinion)
     _note(m, 6, arms[1] * shafts.loads.gear, arms[1] * load_rate.gear, w, shafts.gear)
-    _note(m, 7, arms[2] * pin, arms[2] * pin_load_rate, turn, shafts.pinion)
+    _note(m, 7, arms[2] * pin, arms[2] * pin_load_rate, surface_speed, shafts.pinion)
 
 
 @compiled(inline=True)
@@ -148,17 +148,17 @@ def _note(m: Model, which: int, force: float, force_rate: float, speed: float, a
 @compiled(makes_arrays=True)
 def _loads_ahead(m: Model, t: float, y: Floats) -> Loads:
     """Loads of the hubs a short time later: the friction that holds a pair changes with all forces at both shafts."""
-    turn, pinion, gear = forces_at_shafts(m, t, y)
-    shafts, later = solve_shafts(m, t, y, turn, pinion, gear), np.zeros(y.size)
+    surface_speed, pinion, gear = forces_at_shafts(m, t, y)
+    shafts, later = solve_shafts(m, t, y, surface_speed, pinion, gear), np.zeros(y.size)
     if m.scene.nodes > 0:
         follow_slopes(m, t, y, _AHEAD, later)
     later[U] = y[U] + _AHEAD * y[V]
     e = error_at(m, y[U], y[PHASE])
-    later[V] = y[V] + _AHEAD * bend_of(e, turn, y[W], shafts.pinion, shafts.gear)
+    later[V] = y[V] + _AHEAD * acceleration_of(e, surface_speed, y[W], shafts.pinion, shafts.gear)
     later[PHASE] = y[PHASE] + _AHEAD * m.scene.phase_rate * y[W]
     later[W] = y[W] + _AHEAD * shafts.gear
-    turn, pinion, gear = forces_at_shafts(m, t + _AHEAD, later)
-    return solve_shafts(m, t + _AHEAD, later, turn, pinion, gear).loads
+    surface_speed, pinion, gear = forces_at_shafts(m, t + _AHEAD, later)
+    return solve_shafts(m, t + _AHEAD, later, surface_speed, pinion, gear).loads
 
 
 @compiled(inline=True)
@@ -202,29 +202,34 @@ def accumulate_friction(m: Model, t: float, y: Floats, root: bool, between: Floa
     if h == 0.0:
         return math.nan
     first, first_rate = _copied(m.work.friction.power), _copied(m.work.friction.power_rate)
-    bends = root and (m.scene.population.flanks != 0 or has_hubs(m))
-    if bends and a.order_used > 0:
+    is_curved = root and (m.scene.population.flanks != 0 or has_hubs(m))
+    if is_curved and a.order_used > 0:
         _accumulate_inside(m, start, h, between, rates)
         return note_friction(m, t, y)
     middle, halved = first, a.order_used > 0
     # weights of the rule, of powers and rates at both ends
-    begin, end, first_bend, last_bend = 0.5 * h, 0.5 * h, h * h / 12.0, -h * h / 12.0
+    begin, end, first_rate_weight, last_rate_weight = 0.5 * h, 0.5 * h, h * h / 12.0, -h * h / 12.0
     if halved:
-        begin, end, first_bend, last_bend = 7.0 / 30.0 * h, 7.0 / 30.0 * h, h * h / 60.0, -h * h / 60.0
-    elif bends:  # of a parabola
-        begin, end, first_bend, last_bend = 2.0 / 3.0 * h, h / 3.0, h * h / 6.0, 0.0
-    add_friction_work(m, begin, first_bend)
+        begin, end, first_rate_weight, last_rate_weight = (
+            7.0 / 30.0 * h,
+            7.0 / 30.0 * h,
+            h * h / 60.0,
+            -h * h / 60.0,
+        )
+    elif is_curved:  # of a parabola
+        begin, end, first_rate_weight, last_rate_weight = 2.0 / 3.0 * h, h / 3.0, h * h / 6.0, 0.0
+    add_friction_work(m, begin, first_rate_weight)
     if halved:
         _note_within(m, start + 0.5 * h, between, rates)
         add_friction_work(m, 16.0 / 30.0 * h, 0.0)
         middle = _copied(m.work.friction.power)
     force = note_friction(m, t, y)
-    add_friction_work(m, end, last_bend)
+    add_friction_work(m, end, last_rate_weight)
     if keeps_friction_work(m):
         divide_friction_work(m, between if halved else y)
     for i in range(_POWERS):
         last, last_rate = r.power[i], r.power_rate[i]
-        rate = 2.0 * (last - first[i]) / h - first_rate[i] if bends else last_rate  # of a parabola
+        rate = 2.0 * (last - first[i]) / h - first_rate[i] if is_curved else last_rate  # of a parabola
         loss = integral(h, first[i], last, first_rate[i], rate)
         error = error_estimate(h, first[i], last, first_rate[i], rate)
         if halved:

@@ -141,7 +141,7 @@ def write_impacts(
 @compiled(inline=True)
 def _history_of(m: Model, event: Floats) -> int:
     """Index of the history of the pair of an event."""
-    return history_of(m, int(event[_FLANK]), int(event[_PAIR] - m.state.turns))
+    return history_of(m, int(event[_FLANK]), int(event[_PAIR] - m.state.whole_pitches))
 
 
 @compiled_once(IMPACTS)
@@ -158,7 +158,7 @@ def _renew(m: Model, t: float, y: Floats, yp: Floats) -> None:
         k = m.work.known[i]
         if m.state.history[k].impact.begun != 0:
             now = _load_of(m, t, y, yp, k)
-            _look(m, t, k, now.force)
+            _note_extreme(m, t, k, now.force)
             _note(m, t, k, now)
 
 
@@ -203,7 +203,7 @@ def _note(m: Model, t: float, k: int, now: Load) -> None:
 
 
 @compiled(inline=True)
-def _look(m: Model, t: float, k: int, force: float) -> None:
+def _note_extreme(m: Model, t: float, k: int, force: float) -> None:
     """Note a force of a contact where it is an extreme."""
     impact = m.state.history[k].impact
     if force > impact.largest_force:
@@ -225,33 +225,33 @@ def _add(m: Model, t: float, k: int, now: Load, steep: bool) -> None:
     impact.energy_lost += integral(h, last.power, now.power, last.power_rate, power_rate)
     if last.force_rate * rate < 0.0:
         share, force = turning_point(h, last.force, last.force_rate, now.force, rate)
-        _look(m, last.time + share * h, k, force)
-    _look(m, t, k, now.force)
+        _note_extreme(m, last.time + share * h, k, force)
+    _note_extreme(m, t, k, now.force)
 
 
 @compiled_once(IMPACTS)
 def _load_of(m: Model, t: float, y: Floats, yp: Floats, k: int) -> Load:
     """Load of the pair that the k-th history is about."""
-    coast = flank_of_history(m, k)
-    pair = state_of_pair(m, coast, m.state.history[k].pair, y)
+    flank = flank_of_history(m, k)
+    pair = state_of_pair(m, flank, m.state.history[k].pair, y)
     if not in_reach(m, pair.gap):
         return Load(0.0, 0.0, 0.0, 0.0)
-    f, sign = force_of_pair(m, t, y, pair, False), 1.0 - 2.0 * coast
+    f, sign = force_of_pair(m, t, y, pair, False), 1.0 - 2.0 * flank
     by_gap = f.by_gap
     if m.scene.nodes > 0:
-        by_gap += _following(m, k, y, pair.place)
-    bend = acceleration_of_gap(m, coast, pair.slope, y[W], yp[V], yp[W])
-    rate = by_gap * pair.rate + f.by_rate * bend + f.by_place * pair.place_rate
-    power, power_rate = -f.load * pair.rate, -(rate * pair.rate + f.load * bend)
+        by_gap += _following(m, k, y, pair.position)
+    gap_acceleration = acceleration_of_gap(m, flank, pair.slope, y[W], yp[V], yp[W])
+    rate = by_gap * pair.rate + f.by_rate * gap_acceleration + f.by_position * pair.position_rate
+    power, power_rate = -f.load * pair.rate, -(rate * pair.rate + f.load * gap_acceleration)
     if f.path != 0.0:
-        place_bend = sign * m.scene.phase_rate * yp[W] if pair.moves else 0.0
-        path_rate = f.path_by_gap * pair.rate + f.path_by_place * pair.place_rate
-        power -= f.path * pair.place_rate
-        power_rate -= path_rate * pair.place_rate + f.path * place_bend
+        position_acceleration = sign * m.scene.phase_rate * yp[W] if pair.moves else 0.0
+        path_rate = f.path_by_gap * pair.rate + f.path_by_position * pair.position_rate
+        power -= f.path * pair.position_rate
+        power_rate -= path_rate * pair.position_rate + f.path * position_acceleration
     return Load(f.load, rate, power, power_rate)
 
 
 @compiled_once(IMPACTS, makes_arrays=True)
-def _following(m: Model, k: int, y: Floats, place: float) -> float:
+def _following(m: Model, k: int, y: Floats, position: float) -> float:
     """By how much the slope of an elastic pair in the gap differs while its deflections follow."""
-    return following_slope(m, k, y, contact_length(m, place), np.empty(m.scene.nodes))
+    return following_slope(m, k, y, contact_length(m, position), np.empty(m.scene.nodes))

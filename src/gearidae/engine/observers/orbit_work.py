@@ -29,17 +29,20 @@ def _power(m: Model, t: float, y: Floats, yp: Floats) -> tuple[float, float]:
         set_limits(m, t, y[W])
         for i in range(m.work.pair_forces.count):
             noted = m.work.pair_forces.pair[i]
-            coast = flank_of_history(m, noted.history)
-            bend = acceleration_of_gap(m, coast, noted.relief, y[W], yp[V], yp[W])
-            changes = noted.force_rate + noted.damping * bend
-            force += (1.0 - 2.0 * coast) * noted.force
-            rate += (1.0 - 2.0 * coast) * changes
-            coast_force += coast * noted.force
-            coast_rate += coast * changes
+            flank = flank_of_history(m, noted.history)
+            gap_acceleration = acceleration_of_gap(m, flank, noted.relief, y[W], yp[V], yp[W])
+            changes = noted.force_rate + noted.damping * gap_acceleration
+            force += (1.0 - 2.0 * flank) * noted.force
+            rate += (1.0 - 2.0 * flank) * changes
+            coast_force += flank * noted.force
+            coast_rate += flank * changes
     o = m.work.orbit
     power = -force * o.error_rate - coast_force * o.play_rate
     return power, -(
-        rate * o.error_rate + force * o.error_bend + coast_rate * o.play_rate + coast_force * o.play_bend
+        rate * o.error_rate
+        + force * o.error_acceleration
+        + coast_rate * o.play_rate
+        + coast_force * o.play_acceleration
     )
 
 

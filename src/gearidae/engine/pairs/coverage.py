@@ -26,75 +26,78 @@ class Fraction(NamedTuple):
 
     value: float
     slope: float
-    bend: float
+    curvature: float
 
 
 @compiled(inline=True)
-def fraction_of(m: Model, side: int, coast: int, pair: int, inside: float) -> Fraction:
+def fraction_of(m: Model, side: int, flank: int, pair: int, inside: float) -> Fraction:
     """Covered fraction of a side's tooth: smooth steps between the middles of the intervals of its table.
 
     On the coast flank the gear's tooth is the next one.
     """
     coverage = m.scene.coverage[side]
-    row = coverage.values_at + int(pair + m.state.turns + side * coast) % coverage.teeth * coverage.places
-    along = inside * coverage.place_scale - 0.5
+    row = (
+        coverage.values_at
+        + int(pair + m.state.whole_pitches + side * flank) % coverage.teeth * coverage.positions
+    )
+    along = inside * coverage.position_scale - 0.5
     # it stays before the middle of the first interval, or behind that of the last one
-    last = min(max(math.floor(along), -1), coverage.places - 1)
+    last = min(max(math.floor(along), -1), coverage.positions - 1)
     before = m.tables[row + max(last, 0)]
-    change = m.tables[row + min(last + 1, coverage.places - 1)] - before
-    u, rise = along - last, change * coverage.place_scale
+    change = m.tables[row + min(last + 1, coverage.positions - 1)] - before
+    u, rise = along - last, change * coverage.position_scale
     return Fraction(
         before + change * (u * u * u * (10.0 - 15.0 * u + 6.0 * u * u)),
         30.0 * rise * u * u * (1.0 - u) * (1.0 - u),
-        60.0 * rise * coverage.place_scale * u * (1.0 - u) * (1.0 - 2.0 * u),
+        60.0 * rise * coverage.position_scale * u * (1.0 - u) * (1.0 - 2.0 * u),
     )
 
 
 @compiled(inline=True)
-def share_changes(m: Model, coast: int, pair: int, inside: float) -> tuple[Shares, Shares, Shares]:
+def share_changes(m: Model, flank: int, pair: int, inside: float) -> tuple[Shares, Shares, Shares]:
     """Shares of the materials in a pair, and their first and second derivatives along the path, per pitch.
 
     Parameters
     ----------
-    coast, pair : int
+    flank, pair : int
         Flank and number of the pair, counted without the turns taken out of the phase.
     inside : float
         Path position, clipped to the path of contact, in pitches.
     """
-    if m.scene.by_place == 0:
+    if m.scene.covered_by_position == 0:
         return WHOLE, NONE, NONE
-    f = fraction_of(m, 0, coast, pair, inside)
+    f = fraction_of(m, 0, flank, pair, inside)
     if m.scene.patches != 0:
-        return (1.0 - f.value, f.value, 0.0), (-f.slope, f.slope, 0.0), (-f.bend, f.bend, 0.0)
-    g = fraction_of(m, 1, coast, pair, inside)
-    total, total_slope, total_bend = f.value + g.value, f.slope + g.slope, f.bend + g.bend
+        return (1.0 - f.value, f.value, 0.0), (-f.slope, f.slope, 0.0), (-f.curvature, f.curvature, 0.0)
+    g = fraction_of(m, 1, flank, pair, inside)
+    total, total_slope, total_curvature = f.value + g.value, f.slope + g.slope, f.curvature + g.curvature
     both, slope = f.value * g.value, f.slope * g.value + f.value * g.slope
-    bend = f.bend * g.value + 2.0 * f.slope * g.slope + f.value * g.bend
+    curvature = f.curvature * g.value + 2.0 * f.slope * g.slope + f.value * g.curvature
     return (
         (1.0 - total + both, both, total - 2.0 * both),
         (slope - total_slope, slope, total_slope - 2.0 * slope),
-        (bend - total_bend, bend, total_bend - 2.0 * bend),
+        (curvature - total_curvature, curvature, total_curvature - 2.0 * curvature),
     )
 
 
 @compiled(inline=True)
-def shares_of(m: Model, coast: int, pair: int, inside: float) -> Shares:
+def shares_of(m: Model, flank: int, pair: int, inside: float) -> Shares:
     """Shares of the materials in a pair; parameters as for `share_changes`."""
-    return share_changes(m, coast, pair, inside)[0]
+    return share_changes(m, flank, pair, inside)[0]
 
 
 @compiled
-def note_shares(m: Model, k: int, coast: int, pair: int, inside: float) -> None:
+def note_shares(m: Model, k: int, flank: int, pair: int, inside: float) -> None:
     """Note the shares of the materials in the pair with the k-th history, for the nodes of its elastic contact."""
-    if m.scene.by_place != 0:
+    if m.scene.covered_by_position != 0:
         shares = m.work.shares[k]
-        shares[0], shares[1], shares[2] = shares_of(m, coast, pair, inside)
+        shares[0], shares[1], shares[2] = shares_of(m, flank, pair, inside)
 
 
 @compiled
 def noted_shares(m: Model, k: int) -> Shares:
     """Shares that `note_shares` has noted last."""
-    if m.scene.by_place == 0:
+    if m.scene.covered_by_position == 0:
         return WHOLE
     shares = m.work.shares[k]
     return shares[0], shares[1], shares[2]
@@ -109,7 +112,7 @@ def weighed(shares: Shares, values: Shares) -> float:
 @compiled(inline=True)
 def loading_of(m: Model, gap: float, shares: Shares) -> tuple[float, float]:
     """Loading branch of all materials and its slope, scaled, for a contact of unit length."""
-    if m.scene.by_place == 0:
+    if m.scene.covered_by_position == 0:
         return loading_value(m.tables, m.scene.loading_at, gap)
     return mixed_value(m.tables, m.scene.loading_at, gap, shares)
 
@@ -123,7 +126,7 @@ def rubs_by_material(m: Model) -> bool:
 @compiled(inline=True)
 def limit_of_loading(m: Model, gap: float, shares: Shares) -> tuple[float, float]:
     """Limit of the friction of the loading branch of all materials and its slope, as `loading_of`."""
-    if m.scene.by_place == 0:
+    if m.scene.covered_by_position == 0:
         return loading_value(m.tables, m.scene.friction.loading_at, gap)
     return mixed_value(m.tables, m.scene.friction.loading_at, gap, shares)
 
@@ -139,7 +142,7 @@ def added(a: tuple[Shares, Shares], b: tuple[Shares, Shares]) -> tuple[Shares, S
 @compiled
 def potential_of(m: Model, gap: float, shares: Shares) -> float:
     """Potential of the loading branch of all materials, scaled, per length."""
-    if m.scene.by_place == 0:
+    if m.scene.covered_by_position == 0:
         return loading_value(m.tables, m.scene.potential_at, gap)[0]
     return mixed_value(m.tables, m.scene.potential_at, gap, shares)[0]
 
@@ -153,14 +156,14 @@ def potentials_of(m: Model, gap: float) -> tuple[Shares, Shares]:
     first = m.scene.potential_at
     a, a1 = loading_value(m.tables, first, gap)
     b = b1 = c = c1 = 0.0
-    if m.scene.by_place != 0:
+    if m.scene.covered_by_position != 0:
         b, b1 = loading_value(m.tables, first + 8 * N_LOADING, gap)
         c, c1 = loading_value(m.tables, first + 16 * N_LOADING, gap)
     return (a, b, c), (a1, b1, c1)
 
 
 @compiled
-def path_position(m: Model, coast: int, pair: int, phase: float) -> float:
+def path_position(m: Model, flank: int, pair: int, phase: float) -> float:
     """Position of a pair along the path of contact, clipped to it, in pitches."""
-    along = m.scene.coast_phase + pair - phase if coast else phase - pair
+    along = m.scene.coast_phase + pair - phase if flank else phase - pair
     return min(max(along, 0.0), m.scene.contact_ratio)

@@ -21,13 +21,13 @@ SHORTEST_SQ = 1e-12
 
 @compiled
 def length_and_rates(
-    m: Model, coast: int, pair: int, phase: float, w: float, w_rate: float
+    m: Model, flank: int, pair: int, phase: float, w: float, w_rate: float
 ) -> tuple[float, float, float]:
     """Contact length of a pair on the path of contact, its rate and the rate of that."""
-    sign = m.scene.phase_rate * (1.0 - 2.0 * coast)
+    sign = m.scene.phase_rate * (1.0 - 2.0 * flank)
     curvature = m.scene.sum_curvature
     # l^2 = r - c r^2 with r the pinion's radius of curvature
-    radius = m.scene.start_radius + (m.scene.coast_phase + pair - phase if coast else phase - pair)
+    radius = m.scene.start_radius + (m.scene.coast_phase + pair - phase if flank else phase - pair)
     length = math.sqrt(max(radius - radius * radius * curvature, SHORTEST_SQ))
     half = 0.5 - radius * curvature
     along = sign * w
@@ -40,7 +40,7 @@ class WeighedLength(NamedTuple):
 
     Attributes
     ----------
-    length, rate, bend : float
+    length, rate, second_rate : float
         With two derivatives in time while the values stay.
     by_gap : float
         Slope of the rate in the gap.
@@ -48,7 +48,7 @@ class WeighedLength(NamedTuple):
 
     length: float
     rate: float
-    bend: float
+    second_rate: float
     by_gap: float
 
 
@@ -67,23 +67,23 @@ def weighed_length(
     values, slopes : tuple of three floats
         What each material has per length, as if it covered everything, and its slope in the gap.
     """
-    coast, pair, phase = where
-    length, rate, bend = length_and_rates(m, coast, pair, phase, w, w_rate)
-    if m.scene.by_place != 0:
-        return _by_place(m, where, (w, w_rate), (length, rate, bend), values, slopes)
+    flank, pair, phase = where
+    length, rate, second_rate = length_and_rates(m, flank, pair, phase, w, w_rate)
+    if m.scene.covered_by_position != 0:
+        return _by_position(m, where, (w, w_rate), (length, rate, second_rate), values, slopes)
     a = weighed(WHOLE, values)
-    return WeighedLength(a * length, a * rate, a * bend, weighed(WHOLE, slopes) * rate)
+    return WeighedLength(a * length, a * rate, a * second_rate, weighed(WHOLE, slopes) * rate)
 
 
 @compiled(inline=True)
 def slopes_along_path(
-    m: Model, coast: int, pair: int, phase: float, values: Shares, slopes: Shares
+    m: Model, flank: int, pair: int, phase: float, values: Shares, slopes: Shares
 ) -> tuple[float, float, float]:
     """Slope along the path of a pair's contact length times what its materials have, per pitch, and slopes of that.
 
     Parameters
     ----------
-    coast, pair : int
+    flank, pair : int
         Flank and number of the pair.
     phase : float
         Phase of the gear.
@@ -92,11 +92,11 @@ def slopes_along_path(
 
     Returns
     -------
-    along, by_gap, by_place : float
+    along, by_gap, by_position : float
     """
-    pitch = (1.0 - 2.0 * coast) / m.scene.phase_rate  # speed at which the pair goes a pitch in a unit of time
-    length = weighed_length(m, (coast, pair, phase), pitch, 0.0, values, slopes)
-    return length.rate, length.by_gap, length.bend
+    pitch = (1.0 - 2.0 * flank) / m.scene.phase_rate  # speed at which the pair goes a pitch in a unit of time
+    length = weighed_length(m, (flank, pair, phase), pitch, 0.0, values, slopes)
+    return length.rate, length.by_gap, length.second_rate
 
 
 @compiled(inline=True)
@@ -116,14 +116,14 @@ def length_power(
     energies, slopes : tuple of three floats
         Of each material per length, and in the gap, as for `weighed_length`.
     """
-    coast = flank_of_history(m, k)
-    where = coast, m.state.history[k].pair, y[PHASE]
+    flank = flank_of_history(m, k)
+    where = flank, m.state.history[k].pair, y[PHASE]
     energy = weighed_length(m, where, y[W], w_rate, energies, slopes)
-    return energy.rate, energy.bend + opening_of(m, coast, y[V]) * energy.by_gap
+    return energy.rate, energy.second_rate + opening_of(m, flank, y[V]) * energy.by_gap
 
 
 @compiled
-def _by_place(
+def _by_position(
     m: Model,
     where: tuple[int, int, float],
     speed: tuple[float, float],
@@ -132,16 +132,16 @@ def _by_place(
     slopes: Shares,
 ) -> WeighedLength:
     """Weigh a contact length, given with its rates, where shares change along the path."""
-    coast, pair, phase = where
-    length, rate, bend = lengths
-    shares, changes, bends = share_changes(m, coast, pair, path_position(m, coast, pair, phase))
-    along = m.scene.phase_rate * (1.0 - 2.0 * coast)
+    flank, pair, phase = where
+    length, rate, second_rate = lengths
+    shares, changes, second_changes = share_changes(m, flank, pair, path_position(m, flank, pair, phase))
+    along = m.scene.phase_rate * (1.0 - 2.0 * flank)
     v, v_rate = along * speed[0], along * speed[1]
     a, a1 = weighed(shares, values), weighed(changes, values) * v
-    a2 = weighed(bends, values) * v * v + weighed(changes, values) * v_rate
+    a2 = weighed(second_changes, values) * v * v + weighed(changes, values) * v_rate
     return WeighedLength(
         a * length,
         a * rate + a1 * length,
-        a * bend + 2.0 * a1 * rate + a2 * length,
+        a * second_rate + 2.0 * a1 * rate + a2 * length,
         weighed(shares, slopes) * rate + weighed(changes, slopes) * v * length,
     )

@@ -39,22 +39,22 @@ class MeshError(NamedTuple):
         Of the pinion [rad]; 0 in a mesh without errors, where nobody asks for it.
     value : float
         E over the unit of length.
-    pinion, pinion_bend : float
+    pinion, pinion_curvature : float
         Its first two derivatives in the pinion's angle, over R1 and R1^2.
-    gear, gear_bend : float
+    gear, gear_curvature : float
         Its first two derivatives in the gear's angle, over R2 and R2^2.
-    rate, bend : float
+    rate, acceleration : float
         Its first two derivatives in time at fixed angles, which the orbit of the pinion in its hub makes.
     """
 
     angle: float
     value: float
     pinion: float
-    pinion_bend: float
+    pinion_curvature: float
     gear: float
-    gear_bend: float
+    gear_curvature: float
     rate: float
-    bend: float
+    acceleration: float
 
 
 NO_ERROR = MeshError(*(0.0,) * 8)
@@ -76,27 +76,35 @@ def mesh_error(m: Model, u: float, phase: float) -> MeshError:
     ask for it at an accepted state one after the other: the last evaluation is kept.
     """
     s, last, orbit = m.scene, m.work.mesh_error, m.work.orbit
-    if last.known != 0 and last.u == u and last.phase == phase and last.turns == m.state.turns:
+    if (
+        last.known != 0
+        and last.u == u
+        and last.phase == phase
+        and last.whole_pitches == m.state.whole_pitches
+    ):
         return MeshError(
             last.angle,
             last.value,
             last.pinion,
-            last.pinion_bend,
+            last.pinion_curvature,
             last.gear,
-            last.gear_bend,
+            last.gear_curvature,
             orbit.error_rate,
-            orbit.error_bend,
+            orbit.error_acceleration,
         )
     radius = s.pinion_radius / s.length_unit
-    runout = gear = gear_bend = 0.0
+    runout = gear = gear_curvature = 0.0
     if s.gear_runout != 0.0:
-        turned = 2.0 * math.pi * ((m.state.turns % s.gear_teeth + phase) / s.gear_teeth) + s.gear_runout_phase
+        turned = (
+            2.0 * math.pi * ((m.state.whole_pitches % s.gear_teeth + phase) / s.gear_teeth)
+            + s.gear_runout_phase
+        )
         runout, gear_radius = s.gear_runout * math.cos(turned), s.gear_radius / s.length_unit
         gear = -s.gear_runout * math.sin(turned) / gear_radius
-        gear_bend = -runout / (gear_radius * gear_radius)
+        gear_curvature = -runout / (gear_radius * gear_radius)
     others = runout + orbit.error  # than those of the pinion's angle
-    turns = (m.state.turns % s.pinion_teeth + phase) / s.pinion_teeth
-    rigid = 2.0 * math.pi * turns + (u + others) / radius
+    revolutions = (m.state.whole_pitches % s.pinion_teeth + phase) / s.pinion_teeth
+    rigid = 2.0 * math.pi * revolutions + (u + others) / radius
     angle = rigid
     e = e1 = e2 = 0.0
     count, first = s.error_count, s.error_at
@@ -116,49 +124,51 @@ def mesh_error(m: Model, u: float, phase: float) -> MeshError:
         step = (angle - rigid - e / radius) / (1.0 - e1)
         angle -= step
         phase_step = highest * abs(step)  # e and its derivatives are those before the step
-    last.known, last.u, last.phase, last.turns = 1, u, phase, m.state.turns
-    last.angle, last.value, last.pinion, last.pinion_bend = angle, e + others, e1, e2
-    last.gear, last.gear_bend = gear, gear_bend
-    return MeshError(angle, e + others, e1, e2, gear, gear_bend, orbit.error_rate, orbit.error_bend)
+    last.known, last.u, last.phase, last.whole_pitches = 1, u, phase, m.state.whole_pitches
+    last.angle, last.value, last.pinion, last.pinion_curvature = angle, e + others, e1, e2
+    last.gear, last.gear_curvature = gear, gear_curvature
+    return MeshError(
+        angle, e + others, e1, e2, gear, gear_curvature, orbit.error_rate, orbit.error_acceleration
+    )
 
 
 # -- motions ---------------------------------------------------------------------------------------------------------
 
 
 @compiled(inline=True)
-def turn_of(e: MeshError, v: float, w: float) -> float:
+def surface_speed_of(e: MeshError, v: float, w: float) -> float:
     """Surface velocity of the pinion, for the rate of u and the surface velocity of the gear."""
     return (v + (1.0 + e.gear) * w + e.rate) / (1.0 - e.pinion)
 
 
 @compiled(inline=True)
-def rate_of(e: MeshError, turn: float, w: float) -> float:
+def rate_of(e: MeshError, surface_speed: float, w: float) -> float:
     """Rate of u, for the surface velocities of both gears."""
-    return turn * (1.0 - e.pinion) - (1.0 + e.gear) * w - e.rate
+    return surface_speed * (1.0 - e.pinion) - (1.0 + e.gear) * w - e.rate
 
 
 @compiled(inline=True)
-def pinion_acceleration(e: MeshError, turn: float, w: float, v_rate: float, w_rate: float) -> float:
+def pinion_acceleration(e: MeshError, surface_speed: float, w: float, v_rate: float, w_rate: float) -> float:
     """Acceleration of the pinion's surface, for the rates of both."""
-    bends = e.pinion_bend * turn * turn + e.gear_bend * w * w + e.bend
-    return (v_rate + (1.0 + e.gear) * w_rate + bends) / (1.0 - e.pinion)
+    curved = e.pinion_curvature * surface_speed * surface_speed + e.gear_curvature * w * w + e.acceleration
+    return (v_rate + (1.0 + e.gear) * w_rate + curved) / (1.0 - e.pinion)
 
 
 @compiled(inline=True)
-def bend_of(e: MeshError, turn: float, w: float, pinion: float, gear: float) -> float:
+def acceleration_of(e: MeshError, surface_speed: float, w: float, pinion: float, gear: float) -> float:
     """Rate of the rate of u, for the speeds and accelerations of both surfaces."""
-    bends = e.pinion_bend * turn * turn + e.gear_bend * w * w + e.bend
-    return (1.0 - e.pinion) * pinion - (1.0 + e.gear) * gear - bends
+    curved = e.pinion_curvature * surface_speed * surface_speed + e.gear_curvature * w * w + e.acceleration
+    return (1.0 - e.pinion) * pinion - (1.0 + e.gear) * gear - curved
 
 
 @compiled(inline=True)
 def speed_and_error(m: Model, y: Floats) -> tuple[float, MeshError]:
     """Surface velocity of the pinion at a state, and the error of the mesh."""
-    turn, e = y[V] + y[W], NO_ERROR
+    surface_speed, e = y[V] + y[W], NO_ERROR
     if m.scene.has_error != 0:  # most scenes have none, and this is in every evaluation
         e = mesh_error(m, y[U], y[PHASE])
-        turn = turn_of(e, y[V], y[W])
-    return turn, e
+        surface_speed = surface_speed_of(e, y[V], y[W])
+    return surface_speed, e
 
 
 @compiled

@@ -22,7 +22,7 @@ from gearidae.laws.shaft.own import law_force
 
 VALUES: Final = 6
 """Of the law, that a polynomial goes through."""
-_TINY: Final = 1e-300
+_LEAST_DIVISOR: Final = 1e-300
 
 
 @compiled(inline=True)
@@ -47,16 +47,16 @@ def _set_orbit(m: Model, t: float) -> None:
         _lay_out(m, origin, step)
     along = (t - origin) / step
     for which in range(2):
-        c, value, rate, bend = o.value[which], 0.0, 0.0, 0.0
+        c, value, rate, second_rate = o.value[which], 0.0, 0.0, 0.0
         for k in range(VALUES - 1, -1, -1):  # Newton's form and its derivatives
             x = along - k
-            bend = bend * x + 2.0 * rate
+            second_rate = second_rate * x + 2.0 * rate
             rate = rate * x + value
             value = value * x + c[k]
         if which == 0:
-            o.error, o.error_rate, o.error_bend = value, rate / step, bend / (step * step)
+            o.error, o.error_rate, o.error_acceleration = value, rate / step, second_rate / (step * step)
         else:
-            o.play_rate, o.play_bend = rate / step, bend / (step * step)
+            o.play_rate, o.play_acceleration = rate / step, second_rate / (step * step)
             s.clearance[COAST] = s.clearance[DRIVE] + value
             s.nearest[COAST] = s.clearance[COAST] + s.orbit_nearest
     o.time = t
@@ -70,7 +70,7 @@ def _lay_out(m: Model, origin: float, step: float) -> None:
     o.origin, o.step = origin, step
     for k in range(VALUES):
         x, y = law_force(m, DRIVE, origin + k * step, 0.0, 0.0)
-        size = max(math.hypot(x, y), _TINY)
+        size = max(math.hypot(x, y), _LEAST_DIVISOR)
         o.value[0, k] = -s.orbit * (s.orbit_sine * x + s.orbit_cosine * y) / size
         o.value[1, k] = -s.orbit_play * (s.orbit_x * x + s.orbit_y * y) / size
     for which in range(2):
@@ -86,17 +86,17 @@ def orbit_anew(m: Model) -> None:
 
 
 @compiled(inline=True)
-def opening_of(m: Model, coast: int, v: float) -> float:
+def opening_of(m: Model, flank: int, v: float) -> float:
     """Rate of the gaps of a flank on the path of contact, for the rate of u."""
-    return v + m.work.orbit.play_rate if coast else -v
+    return v + m.work.orbit.play_rate if flank else -v
 
 
 @compiled(inline=True)
-def acceleration_of_gap(m: Model, coast: int, slope: float, w: float, v_rate: float, w_rate: float) -> float:
+def acceleration_of_gap(m: Model, flank: int, slope: float, w: float, v_rate: float, w_rate: float) -> float:
     """Second derivative of a gap with the slope of its tip relief, for the accelerations of u and of the gear."""
-    acceleration = (1.0 - 2.0 * coast) * (slope * w_rate - v_rate)
-    if coast:
-        acceleration += m.work.orbit.play_bend
+    acceleration = (1.0 - 2.0 * flank) * (slope * w_rate - v_rate)
+    if flank:
+        acceleration += m.work.orbit.play_acceleration
     if slope != 0.0:
         acceleration += m.scene.relief_slope * m.scene.phase_rate * w * w
     return acceleration

@@ -47,18 +47,22 @@ def add_pair(m: Model, total: MeshForces, pair: PairState, f: PairForce) -> Mesh
     The gap falls with u on the drive flank and rises on the coast flank; the phase carries a coast pair backwards along
     its path.
     """
-    turn, sign, slope = m.scene.phase_rate, 1.0 - 2.0 * pair.coast, pair.slope
+    phase_rate, sign, slope = m.scene.phase_rate, 1.0 - 2.0 * pair.flank, pair.slope
     relief = relief_u = relief_phase = force_w = relief_v = relief_w = 0.0
-    force_phase = f.by_place
+    force_phase = f.by_position
     if f.path != 0.0 or f.path_by_gap != 0.0:
-        relief, relief_u, relief_phase = sign * turn * f.path, -turn * f.path_by_gap, turn * f.path_by_place
+        relief, relief_u, relief_phase = (
+            sign * phase_rate * f.path,
+            -phase_rate * f.path_by_gap,
+            phase_rate * f.path_by_position,
+        )
     if slope != 0.0:  # on the tip relief
-        along = f.by_gap * slope / turn
+        along = f.by_gap * slope / phase_rate
         force_phase += along
         force_w = f.by_rate * slope
         relief += sign * f.load * slope
         relief_u -= f.by_gap * slope
-        relief_phase += along * slope + 2.0 * f.by_place * slope + f.load * m.scene.relief_slope
+        relief_phase += along * slope + 2.0 * f.by_position * slope + f.load * m.scene.relief_slope
         relief_v, relief_w = -force_w, force_w * slope
     return MeshForces(
         total.force + sign * f.load,

@@ -18,9 +18,9 @@ def angle_of_shaft(m: Model, shaft: int, u: float, phase: float) -> float:
     u, phase : float
         Dynamic transmission error and phase, of the scaled state.
     """
-    travel = (m.state.turns + phase - m.state.first_place) / m.scene.phase_rate
+    travel = (m.state.whole_pitches + phase - m.state.first_position) / m.scene.phase_rate
     if shaft != LOAD:
-        travel += u - m.state.initial_lead + error_at(m, u, phase).value
+        travel += u - m.state.initial_pinion_lead + error_at(m, u, phase).value
     return travel * m.scene.torque[shaft].angle_unit
 
 

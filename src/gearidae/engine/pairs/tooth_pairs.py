@@ -95,8 +95,8 @@ def list_known(m: Model, y: Floats) -> int:
     """
     count, reach = 0, pairs_near(m, y)
     for i in range(reach.total):
-        coast, number = pair_at(reach, i)
-        k = history_of(m, coast, number)
+        flank, number = pair_at(reach, i)
+        k = history_of(m, flank, number)
         if m.state.history[k].pair == number:
             m.work.known[count] = k
             count += 1
@@ -104,10 +104,10 @@ def list_known(m: Model, y: Floats) -> int:
 
 
 @compiled(inline=True)
-def history_of(m: Model, coast: int, pair: int) -> int:
+def history_of(m: Model, flank: int, pair: int) -> int:
     """Index of a pair's history; they go round, with at least as many of them as pairs can be within reach."""
     slots = m.scene.slots
-    return coast * slots + (pair & (slots - 1))
+    return flank * slots + (pair & (slots - 1))
 
 
 @compiled(inline=True)
@@ -117,20 +117,20 @@ def flank_of_history(m: Model, k: int) -> int:
 
 
 @compiled
-def pairs_on_path(m: Model, coast: int) -> tuple[int, int]:
+def pairs_on_path(m: Model, flank: int) -> tuple[int, int]:
     """First and last number of a flank's pairs on the path of contact.
 
     The last two mesh marks decide, so that a step that ends at a mark sees the side it comes from.
     """
     between = 0.5 * (m.state.mesh_mark_below + m.state.mesh_mark_above)
-    lowest = between - m.scene.coast_phase if coast else between - m.scene.contact_ratio
+    lowest = between - m.scene.coast_phase if flank else between - m.scene.contact_ratio
     return math.ceil(lowest), math.floor(lowest + m.scene.contact_ratio)
 
 
 @compiled
-def is_on_path(m: Model, coast: int, pair: int) -> bool:
+def is_on_path(m: Model, flank: int, pair: int) -> bool:
     """Whether a pair is one of `pairs_on_path`."""
-    first, last = pairs_on_path(m, coast)
+    first, last = pairs_on_path(m, flank)
     return bool(first <= pair <= last)
 
 
@@ -142,7 +142,7 @@ class PairState(NamedTuple):
 
     Attributes
     ----------
-    coast, number : int
+    flank, number : int
         Its flank and number.
     k : int
         Index of its history.
@@ -152,21 +152,21 @@ class PairState(NamedTuple):
         Its gap and gap rate, tip relief included.
     slope : float
         Of the tip relief along the path.
-    place, place_rate : float
+    position, position_rate : float
         Along the path of contact, and its rate; clipped to the path, and 0, beyond it.
     moves : bool
         Whether it is on the path.
     """
 
-    coast: int
+    flank: int
     number: int
     k: int
     known: bool
     gap: float
     rate: float
     slope: float
-    place: float
-    place_rate: float
+    position: float
+    position_rate: float
     moves: bool
 
 
@@ -175,41 +175,41 @@ name_type(NO_PAIR_FORCE, "PairForce")
 
 
 @compiled(inline=True)
-def pair_state(m: Model, coast: int, number: int, y: Floats) -> PairState:
+def pair_state(m: Model, flank: int, number: int, y: Floats) -> PairState:
     """Return a pair at a state."""
-    k = history_of(m, coast, number)
+    k = history_of(m, flank, number)
     known = m.state.history[k].pair == number
-    gap, rate, slope, inside = pair_gap(m, coast, number, y[U], y[V], y[PHASE], y[W])
+    gap, rate, slope, inside = pair_gap(m, flank, number, y[U], y[V], y[PHASE], y[W])
     moves = 0.0 < inside < m.scene.contact_ratio
-    place_rate = (1.0 - 2.0 * coast) * m.scene.phase_rate * y[W] if moves else 0.0
-    return PairState(coast, number, k, known, gap, rate, slope, inside, place_rate, moves)
+    position_rate = (1.0 - 2.0 * flank) * m.scene.phase_rate * y[W] if moves else 0.0
+    return PairState(flank, number, k, known, gap, rate, slope, inside, position_rate, moves)
 
 
 @compiled
 def pair_gap(
-    m: Model, coast: int, pair: int, u: float, v: float, phase: float, w: float
+    m: Model, flank: int, pair: int, u: float, v: float, phase: float, w: float
 ) -> tuple[float, float, float, float]:
     """Gap, its rate, slope of the separation ds/dxi, and the position along the path clipped to it (in pitches)."""
     s = m.scene
-    along = s.coast_phase + pair - phase if coast else phase - pair
+    along = s.coast_phase + pair - phase if flank else phase - pair
     inside = min(max(along, 0.0), s.contact_ratio)
     outside = along - inside
-    toward = -v if not coast else v + m.work.orbit.play_rate
-    gap = s.clearance[coast] + (u if coast else -u)
+    toward = -v if not flank else v + m.work.orbit.play_rate
+    gap = s.clearance[flank] + (u if flank else -u)
     if s.pitch_errors != 0:
-        gap += pitch_error(m, coast, pair)
+        gap += pitch_error(m, flank, pair)
     if outside == 0.0:
         return gap, toward, 0.0, inside
     slope = s.relief_slope * outside
     gap += 0.5 * s.relief_curvature * outside * outside
-    turn = -w if coast else w
-    return gap, toward + slope * turn, slope, inside
+    path_speed = -w if flank else w
+    return gap, toward + slope * path_speed, slope, inside
 
 
 @compiled
 def pair_motion(
     m: Model,
-    coast: int,
+    flank: int,
     number: int,
     motion: tuple[float, float, float, float],
     v_rate: float,
@@ -217,54 +217,54 @@ def pair_motion(
 ) -> GapMotion:
     """Gap of a pair with two rates at a state (u, v, phase and w) with accelerations."""
     u, v, phase, w = motion
-    gap, rate, slope, _ = pair_gap(m, coast, number, u, v, phase, w)
-    return GapMotion(gap, rate, acceleration_of_gap(m, coast, slope, w, v_rate, w_rate))
+    gap, rate, slope, _ = pair_gap(m, flank, number, u, v, phase, w)
+    return GapMotion(gap, rate, acceleration_of_gap(m, flank, slope, w, v_rate, w_rate))
 
 
 @compiled_once(SOLVER)
-def pitch_error(m: Model, coast: int, pair: int) -> float:
+def pitch_error(m: Model, flank: int, pair: int) -> float:
     """By how much the teeth of a pair stand back, of a scene with pitch errors: it opens the gap of the pair.
 
     A tooth that stands back from its drive flank is nearer with its back. The coast flank of a space of the pinion
     belongs to the next tooth of the gear. What has been looked up is kept: two remainders take as long as the rest of
     a gap. Compiled once, as any more code in `pair_gap` makes runs without errors slower, too.
     """
-    kept, tag = m.work.pitch_error[history_of(m, coast, pair)], pair + m.state.turns + 0.5
+    kept, tag = m.work.pitch_error[history_of(m, flank, pair)], pair + m.state.whole_pitches + 0.5
     if kept.tag != tag:
-        s, number = m.scene, int(pair + m.state.turns)
+        s, number = m.scene, int(pair + m.state.whole_pitches)
         error = m.tables[s.pinion_errors_at + number % int(s.pinion_teeth)]
-        error += m.tables[s.gear_errors_at + (number + coast) % int(s.gear_teeth)]
-        kept.tag, kept.value = tag, -error if coast else error
+        error += m.tables[s.gear_errors_at + (number + flank) % int(s.gear_teeth)]
+        kept.tag, kept.value = tag, -error if flank else error
     return kept.value
 
 
 @compiled
-def path_gap(m: Model, coast: int, pair: int, y: Floats) -> float:
+def path_gap(m: Model, flank: int, pair: int, y: Floats) -> float:
     """Gap of a pair on the path of contact."""
-    gap = m.scene.clearance[coast] + (y[U] if coast else -y[U])
-    return gap + pitch_error(m, coast, pair) if m.scene.pitch_errors != 0 else gap
+    gap = m.scene.clearance[flank] + (y[U] if flank else -y[U])
+    return gap + pitch_error(m, flank, pair) if m.scene.pitch_errors != 0 else gap
 
 
 @compiled
-def gap_and_rate(m: Model, coast: int, pair: int, y: Floats) -> tuple[float, float]:
+def gap_and_rate(m: Model, flank: int, pair: int, y: Floats) -> tuple[float, float]:
     """Gap and gap rate of a pair."""
-    gap, rate, _, _ = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
+    gap, rate, _, _ = pair_gap(m, flank, pair, y[U], y[V], y[PHASE], y[W])
     return gap, rate
 
 
 @compiled(inline=True)
-def on_path(pair: PairState, place: float, place_rate: float, moves: bool) -> PairState:
+def on_path(pair: PairState, position: float, position_rate: float, moves: bool) -> PairState:
     """Return the same pair with another position along the path of contact."""
     return PairState(
-        pair.coast,
+        pair.flank,
         pair.number,
         pair.k,
         pair.known,
         pair.gap,
         pair.rate,
         pair.slope,
-        place,
-        place_rate,
+        position,
+        position_rate,
         moves,
     )
 
@@ -308,9 +308,9 @@ def flank_gaps(m: Model, y: Floats) -> tuple[float, float, int]:
     drive_gap = coast_gap = math.inf
     touching, reach = 0, all_pairs(m, y)
     for i in range(reach.total):
-        coast, pair = pair_at(reach, i)
-        gap = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])[0]
-        if coast:
+        flank, pair = pair_at(reach, i)
+        gap = pair_gap(m, flank, pair, y[U], y[V], y[PHASE], y[W])[0]
+        if flank:
             coast_gap = min(coast_gap, gap)
         else:
             drive_gap = min(drive_gap, gap)
@@ -326,15 +326,15 @@ def rigid_separation(m: Model, u: float, phase: float) -> float:
     least = math.inf
     reach = pairs_along(m, phase)
     for i in range(reach.total):
-        coast, pair = pair_at(reach, i)
-        least = min(least, pair_gap(m, coast, pair, u, 0.0, phase, 0.0)[0])
+        flank, pair = pair_at(reach, i)
+        least = min(least, pair_gap(m, flank, pair, u, 0.0, phase, 0.0)[0])
     return least
 
 
 @compiled
-def nearest_gap(m: Model, coast: int, y: Floats) -> float:
+def nearest_gap(m: Model, flank: int, y: Floats) -> float:
     """Gap on the path of contact of the teeth that stand out farthest, which no pair of this flank undercuts."""
-    return m.scene.nearest[coast] + (y[U] if coast else -y[U])
+    return m.scene.nearest[flank] + (y[U] if flank else -y[U])
 
 
 @compiled

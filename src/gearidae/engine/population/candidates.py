@@ -14,7 +14,7 @@ from gearidae.engine.compiling import POPULATION
 from gearidae.engine.model.state import Model
 from gearidae.engine.pairs.coverage import fraction_of
 from gearidae.engine.pairs.tooth_pairs import flank_of_history
-from gearidae.engine.population.contact_point import Spot, place_of_arc, spot_at
+from gearidae.engine.population.contact_point import Spot, position_of_arc, spot_at
 from gearidae.engine.population.layout import (
     ARC,
     BOUND,
@@ -38,10 +38,10 @@ PLACE_MARGIN: Final = 0.01  # pitches
 
 
 @compiled(inline=True)
-def covers(m: Model, k: int, gap: float, place: float) -> bool:
+def covers(m: Model, k: int, gap: float, position: float) -> bool:
     """Whether the candidates of the k-th history hold at a gap and a position of its pair."""
     contact = m.work.contact[k]
-    return bool(contact.known != 0 and gap >= contact.gap and contact.low <= place <= contact.high)
+    return bool(contact.known != 0 and gap >= contact.gap and contact.low <= position <= contact.high)
 
 
 @compiled
@@ -52,14 +52,14 @@ def forget(m: Model, k: int) -> None:
 
 
 @compiled_once(POPULATION)
-def choose(m: Model, k: int, coast: int, pair: int, gap: float, low: float, high: float) -> None:
+def choose(m: Model, k: int, flank: int, pair: int, gap: float, low: float, high: float) -> None:
     """Choose the candidates of a pair anew; what is joined stays so.
 
     Parameters
     ----------
     k : int
         Index of the pair's history.
-    coast, pair : int
+    flank, pair : int
         Flank and number of the pair.
     gap, low, high : float
         Least gap, and positions along the path between which they are to hold; margins are added.
@@ -72,27 +72,27 @@ def choose(m: Model, k: int, coast: int, pair: int, gap: float, low: float, high
     )
     for j in range(contact.joined):
         m.rows[kept + j] = m.rows[index + int(m.rows[joined + j])]
-    choose_beside(m, k, coast, pair, gap, low, high)
+    choose_beside(m, k, flank, pair, gap, low, high)
 
 
 @compiled
-def choose_beside(m: Model, k: int, coast: int, pair: int, gap: float, low: float, high: float) -> None:
+def choose_beside(m: Model, k: int, flank: int, pair: int, gap: float, low: float, high: float) -> None:
     """Candidates where the joined asperities are in the column `REMEMBERED`."""
     contact, scene, kept = m.work.contact[k], m.scene.population, column(m, k, REMEMBERED)
     contact.known, contact.count, contact.gap = 1, 0, gap - GAP_MARGIN
     contact.low, contact.high = low - PLACE_MARGIN, high + PLACE_MARGIN
     least = contact.gap - scene.join  # a candidate is higher
-    flank, merged = flank_of(m, coast, pair), 0
+    tooth_flank, merged = flank_of(m, flank, pair), 0
     if scene.highest > least:
         before, after = spot_at(m, contact.low, False), spot_at(m, contact.high, False)
         middle = spot_at(m, 0.5 * (contact.low + contact.high), False)
-        bend = 0.5 * scene.steepness / max(before.radius, middle.radius, after.radius)
-        reach = math.sqrt((scene.highest - least) / bend)
+        half_curvature = 0.5 * scene.steepness / max(before.radius, middle.radius, after.radius)
+        reach = math.sqrt((scene.highest - least) / half_curvature)
         level = 0
         while level < len(LEVELS) and least >= LEVELS[level]:
             level += 1
-        first = _first_from(m, level, flank, before.arc - reach)
-        end = int(m.tables[scene.starts_at + level * (scene.flanks + 1) + flank + 1])
+        first = _first_from(m, level, tooth_flank, before.arc - reach)
+        end = int(m.tables[scene.starts_at + level * (scene.flanks + 1) + tooth_flank + 1])
         for j in range(first, end):
             asperity = _listed(m, level, j)
             arc = m.tables[scene.arcs_at + asperity]
@@ -104,7 +104,7 @@ def choose_beside(m: Model, k: int, coast: int, pair: int, gap: float, low: floa
             if merged < contact.joined and m.rows[kept + merged] == asperity:
                 _add(m, k, asperity, 1.0)
                 merged += 1
-            elif _may_join(m, k, asperity, contact.gap, before, after, bend):
+            elif _may_join(m, k, asperity, contact.gap, before, after, half_curvature):
                 _add(m, k, asperity, -1.0)
     while merged < contact.joined:
         _add(m, k, int(m.rows[kept + merged]), 1.0)
@@ -156,19 +156,21 @@ def _kind(m: Model, k: int, asperity: int) -> int:
 @compiled
 def _gear_covered(m: Model, k: int, asperity: int) -> bool:
     """Whether an asperity meets a covered part of the gear's tooth in the pair of the k-th history."""
-    population, coast = m.scene.population, flank_of_history(m, k)
-    place = place_of_arc(m, m.tables[population.arcs_at + asperity])
-    fraction = fraction_of(m, 1, coast, m.state.history[k].pair, place).value
+    population, flank = m.scene.population, flank_of_history(m, k)
+    position = position_of_arc(m, m.tables[population.arcs_at + asperity])
+    fraction = fraction_of(m, 1, flank, m.state.history[k].pair, position).value
     return bool(m.tables[population.gear_numbers_at + asperity] < fraction)
 
 
 @compiled(inline=True)
-def _may_join(m: Model, k: int, asperity: int, gap: float, before: Spot, after: Spot, bend: float) -> bool:
+def _may_join(
+    m: Model, k: int, asperity: int, gap: float, before: Spot, after: Spot, half_curvature: float
+) -> bool:
     """Whether a free asperity may join at a gap or a wider one, while the contact is between two spots."""
     arc, kind = m.tables[m.scene.population.arcs_at + asperity], _kind(m, k, asperity)
     x = max(before.arc - arc, arc - after.arc, 0.0)
     height = m.tables[m.scene.population.heights_at + asperity] - m.tables[kind + K_OFFSET]
-    return bool(height - gap - bend * x * x + m.tables[kind + K_JOIN] > 0.0)
+    return bool(height - gap - half_curvature * x * x + m.tables[kind + K_JOIN] > 0.0)
 
 
 @compiled

@@ -24,32 +24,32 @@ class Spot(NamedTuple):
 
     Attributes
     ----------
-    arc, arc_rate, arc_bend : float
+    arc, arc_rate, arc_second_rate : float
         s1 and its derivatives along the path.
-    radius, radius_rate, radius_bend : float
+    radius, radius_rate, radius_second_rate : float
         R, likewise.
     """
 
     arc: float
     arc_rate: float
-    arc_bend: float
+    arc_second_rate: float
     radius: float
     radius_rate: float
-    radius_bend: float
+    radius_second_rate: float
 
 
 @compiled(inline=True)
-def pair_now(m: Model, coast: int, number: int, y: Floats) -> PairState:
+def pair_now(m: Model, flank: int, number: int, y: Floats) -> PairState:
     """Return a pair at a state.
 
     The last two mesh marks tell whether it is on the path, so that a step that ends at a mark sees the side it comes
     from, beyond which its position is not clipped.
     """
-    pair = pair_state(m, coast, number, y)
-    if not is_on_path(m, coast, number):
-        return on_path(pair, pair.place, 0.0, False)
-    along = m.scene.coast_phase + number - y[PHASE] if coast else y[PHASE] - number
-    rate = (1.0 - 2.0 * coast) * m.scene.phase_rate * y[W]
+    pair = pair_state(m, flank, number, y)
+    if not is_on_path(m, flank, number):
+        return on_path(pair, pair.position, 0.0, False)
+    along = m.scene.coast_phase + number - y[PHASE] if flank else y[PHASE] - number
+    rate = (1.0 - 2.0 * flank) * m.scene.phase_rate * y[W]
     return on_path(pair, along, rate, True)
 
 
@@ -60,18 +60,18 @@ def pair_of(m: Model, k: int, y: Floats) -> PairState:
 
 
 @compiled(inline=True)
-def state_of_pair(m: Model, coast: int, number: int, y: Floats) -> PairState:
+def state_of_pair(m: Model, flank: int, number: int, y: Floats) -> PairState:
     """Return a pair at a state, as the law of its contacts wants it."""
     if m.scene.population.flanks != 0:
-        return pair_now(m, coast, number, y)
-    return pair_state(m, coast, number, y)
+        return pair_now(m, flank, number, y)
+    return pair_state(m, flank, number, y)
 
 
 @compiled(inline=True)
-def spot_at(m: Model, place: float, moves: bool) -> Spot:
+def spot_at(m: Model, position: float, moves: bool) -> Spot:
     """Where a pair touches at a position along the path; `moves` says whether it would change along it."""
     scale, curvature = m.scene.population.arc_scale, m.scene.sum_curvature
-    pinion = m.scene.start_radius + place
+    pinion = m.scene.start_radius + position
     arc, radius = scale * pinion * pinion, pinion - pinion * pinion * curvature
     if not moves:
         return Spot(arc, 0.0, 0.0, radius, 0.0, 0.0)
@@ -81,7 +81,7 @@ def spot_at(m: Model, place: float, moves: bool) -> Spot:
 
 
 @compiled
-def place_of_arc(m: Model, arc: float) -> float:
+def position_of_arc(m: Model, arc: float) -> float:
     """Position along the path of contact, clipped to it, at which a pair touches at an arc."""
     along = math.sqrt(max(arc, 0.0) / m.scene.population.arc_scale) - m.scene.start_radius
     return min(max(along, 0.0), m.scene.contact_ratio)
@@ -93,8 +93,8 @@ def overlap_slopes(m: Model, at: Spot, x: float) -> tuple[float, float]:
     share, stretch = x / at.radius, at.radius_rate / at.radius
     first = share * at.arc_rate + 0.5 * share * share * at.radius_rate
     second = (
-        share * (at.arc_bend - 2.0 * at.arc_rate * stretch)
+        share * (at.arc_second_rate - 2.0 * at.arc_rate * stretch)
         - at.arc_rate * at.arc_rate / at.radius
-        + share * share * (0.5 * at.radius_bend - at.radius_rate * stretch)
+        + share * share * (0.5 * at.radius_second_rate - at.radius_rate * stretch)
     )
     return m.scene.population.steepness * first, m.scene.population.steepness * second

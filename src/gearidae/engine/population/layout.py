@@ -55,8 +55,8 @@ def joined_candidates(m: Model, k: int) -> Floats:
 
 
 @compiled
-def flank_of(m: Model, coast: int, pair: int) -> int:
+def flank_of(m: Model, flank: int, pair: int) -> int:
     """Number of the pinion's flank that a pair has, among all; 0 for a roller."""
     if m.scene.pinion_teeth == 0.0:
         return 0
-    return 2 * int((pair + m.state.turns) % m.scene.pinion_teeth) + coast
+    return 2 * int((pair + m.state.whole_pitches) % m.scene.pinion_teeth) + flank

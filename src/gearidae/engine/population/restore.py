@@ -20,11 +20,11 @@ def take_joined(m: Model, y: Floats, joined: Floats) -> int:
     for i in range(list_known(m, y)):
         k = m.work.known[i]
         contact, now, kept = m.work.contact[k], pair_of(m, k, y), column(m, k, REMEMBERED)
-        starts = m.scene.population.starts_at + flank_of(m, now.coast, now.number)
+        starts = m.scene.population.starts_at + flank_of(m, now.flank, now.number)
         for n in range(joined.size):
             if m.tables[starts] <= joined[n] < m.tables[starts + 1]:
                 m.rows[kept + contact.joined] = joined[n]
                 contact.joined += 1
         taken += contact.joined
-        choose_beside(m, k, now.coast, now.number, now.gap, now.place, now.place)
+        choose_beside(m, k, now.flank, now.number, now.gap, now.position, now.position)
     return taken

@@ -17,7 +17,7 @@ from gearidae.engine.compiling import (
     make_part_ready,
 )
 from gearidae.engine.elastic.layout import DEPTH_HIGH, ContactBounds
-from gearidae.engine.elastic.rows import scratch_size
+from gearidae.engine.elastic.node_rows import scratch_size
 from gearidae.engine.events.histories import begin
 from gearidae.engine.events.mesh_marks import MARKS
 from gearidae.engine.laws.pairs import laws_of_mesh
@@ -61,7 +61,7 @@ from gearidae.records.quantity import Unit
 from gearidae.scene import MATERIAL_NAMES, GearScene, RollerScene, Scene, require_gears
 from gearidae.scene.combinations import may_deflect
 from gearidae.scene.limits import check_reach, pairs_within_reach, relief_in_reach
-from gearidae.scene.orbit import fastest_turn, has_orbit
+from gearidae.scene.orbit import fastest_rotation, has_orbit
 from gearidae.scene.pitch_errors import error_on_path, errors_of_teeth, extreme_sums, has_pitch_errors
 from gearidae.scene.sampled import columns_of
 
@@ -159,7 +159,7 @@ def _gear_problem(scene: GearScene, nodes: Nodes | None, begin: Start) -> Proble
     add_friction(s, scene)
     _set_slots(s, scene)
     add_torques(s, tables, scene, begin.time)
-    set_stop(s, scene, start.mesh_phase if begin.place is None else begin.place)
+    set_stop(s, scene, start.mesh_phase if begin.position is None else begin.position)
     _add_orbit(s, scene, begin.time)
     _add_errors(s, tables, scene)
     _add_pitch_errors(s, tables, scene)
@@ -182,12 +182,12 @@ def _gear_problem(scene: GearScene, nodes: Nodes | None, begin: Start) -> Proble
     nearest = error_on_path(scene, coast=False)
     u = float(s.clearance[DRIVE]) + relief - (start.gap - nearest) / sigma
     w = start.gear_speed * geometry.base_radius_gear / speed
-    model.state.turns, model.state.first_place = whole, start.mesh_phase
+    model.state.whole_pitches, model.state.first_position = whole, start.mesh_phase
     model.state.ageing.age[:] = start.rest_time / float(s.time_unit)
     if s.orbit != 0.0:  # asked here as well: a call from Python takes 50 us
         follow_orbit(model, 0.0)
     error = error_at(model, u, phase) if s.has_error != 0 else NO_ERROR
-    model.state.initial_lead = u + error.value
+    model.state.initial_pinion_lead = u + error.value
     skipped = {
         "static_error": int(not mesh.static_error),
         "harmonics": int(not drive.harmonic and not load.harmonic),
@@ -302,9 +302,9 @@ def _add_errors(s: Record, tables: Tables, scene: GearScene) -> None:
     s.has_error = int(s.error_count > 0 or s.gear_runout != 0.0 or s.orbit != 0.0)
     order = max((order for order, _, _ in harmonics), default=0)
     # two fractions of a table are half a period
-    places = max(len(table[0]) for table in scene.coating.tables)
-    if places > 1:
-        order = max(order, 0.5 * places / float(s.contact_ratio) * float(s.pinion_teeth))
+    positions = max(len(table[0]) for table in scene.coating.tables)
+    if positions > 1:
+        order = max(order, 0.5 * positions / float(s.contact_ratio) * float(s.pinion_teeth))
     s.mesh_omega = 2.0 * math.pi * max(1.0, order / float(s.pinion_teeth))
 
 
@@ -318,7 +318,7 @@ def _add_orbit(s: Record, scene: GearScene, begin: float) -> None:
     s.orbit_sine, s.orbit_cosine = math.sin(pressure + turned), math.cos(pressure + turned)
     s.orbit_x, s.orbit_y = math.cos(turned), -math.sin(turned)
     # a power of two, so that what rounding makes of the speed changes nothing in a run that goes on
-    longest = ORBIT_STEP / max(fastest_turn(scene, begin), _STANDS)
+    longest = ORBIT_STEP / max(fastest_rotation(scene, begin), _STANDS)
     s.orbit_step = 2.0 ** math.floor(math.log2(longest)) / float(s.time_unit)
     s.noting = 1
 
@@ -379,7 +379,7 @@ def _begun(m: Model, scene: Scene, motion: list[float], skipped: dict[str, int])
         (ELASTIC, s.nodes > 0),
         (EXPOSURES, s.bins > 0),
         (POPULATION, s.population.flanks > 0),
-        (FRICTION, s.friction.on != 0 or s.orbit != 0.0),
+        (FRICTION, s.friction.any_dry != 0 or s.orbit != 0.0),
         (IMPACTS, scene.run.impacts),
     )
     for part, wanted in parts:
@@ -389,14 +389,14 @@ def _begun(m: Model, scene: Scene, motion: list[float], skipped: dict[str, int])
         settle_nodes(m, 0.0, y)
     scale = m.tables[s.scale_at : s.scale_at + s.states]
     problem = Problem(m, y, scale, columns_of(scene), _skipped(m, scene) | skipped)
-    begin(problem.addresses.place, 0.0, y)
+    begin(problem.addresses.base, 0.0, y)
     s.follow.balance, s.follow.extremes, s.follow.exposures = scene.run.balance, 1, s.bins > 0
     s.follow.gear = int(s.gear_inverse_mass > 0.0)
     s.follow.passages = int(scene.run.passages and s.follow.gear)
     s.follow.impacts = int(scene.run.impacts)
-    s.follow.friction = int(scene.run.balance and s.friction.rubs != 0)
+    s.follow.friction = int(scene.run.balance and s.friction.any_friction != 0)
     if s.follow.balance != 0:
-        open_balance(problem.addresses.place, y)
+        open_balance(problem.addresses.base, y)
     return problem
 
 

@@ -25,7 +25,7 @@ from gearidae.contact.kernels.law import (
     law_table,
 )
 from gearidae.engine.elastic.layout import ContactBounds, NodeGrid, deepest_gap, node_grid, rigid_limit
-from gearidae.engine.elastic.rows import point_count, row_numbers
+from gearidae.engine.elastic.node_rows import point_count, row_numbers
 from gearidae.engine.model.state import MATERIALS, Record
 from gearidae.engine.setup.build_friction import Limits
 from gearidae.engine.setup.tables import Tables
@@ -120,7 +120,7 @@ def add_contact(
                 widest_gap = _outermost(law, kernel, floor / (force * widest))
                 reach[floor] = max(gap, widest_gap - float(record.gap_offset))
     s.cutoff, s.contact_gap = reach[FORCE_FLOOR], reach[CONTACT_FORCE]
-    if s.by_place == 0:  # shares that never change are mixed once
+    if s.covered_by_position == 0:  # shares that never change are mixed once
         loading, potential = loading.sum(axis=0), potential.sum(axis=0)
     limits.finish(s, tables)
     s.loading_at, s.potential_at = tables.add(loading.ravel()), tables.add(potential.ravel())
@@ -138,7 +138,7 @@ def add_coverage(s: Record, tables: Tables, scene: Scene) -> None:
     """Lay out the fractions by tooth and position, if there are any."""
     if not scene.coating.by_place:
         return
-    s.by_place, s.patches = 1, int(scene.coating.pairing == "patches")
+    s.covered_by_position, s.patches = 1, int(scene.coating.pairing == "patches")
     for coverage, table in zip(s.coverage, scene.coating.tables, strict=True):
         add_fractions(coverage, tables, table, float(s.contact_ratio))
 
@@ -147,9 +147,9 @@ def add_fractions(
     coverage: Record, tables: Tables, table: Sequence[Sequence[float]], contact_ratio: float
 ) -> None:
     """Lay out a side's fractions by tooth and position; `coverage`, its ``COVERAGE``, is changed."""
-    coverage.teeth, coverage.places = len(table), len(table[0])
+    coverage.teeth, coverage.positions = len(table), len(table[0])
     coverage.values_at = tables.add(np.array(table).ravel())
-    coverage.place_scale = len(table[0]) / contact_ratio
+    coverage.position_scale = len(table[0]) / contact_ratio
 
 
 def _outermost(law: AsperityLaw, kernel: Kernel, least: float) -> float:

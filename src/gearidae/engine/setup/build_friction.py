@@ -31,19 +31,19 @@ def add_friction(s: Record, scene: GearScene) -> None:
     """
     friction = s.friction
     friction.joints, friction.flanks = int(bool(joints(scene))), int(has_flank_friction(scene))
-    friction.rubs = int(friction.joints != 0 or friction.flanks != 0)
-    friction.on = int(friction.rubs != 0 or s.dry != 0)
+    friction.any_friction = int(friction.joints != 0 or friction.flanks != 0)
+    friction.any_dry = int(friction.any_friction != 0 or s.dry != 0)
     friction.holding = Holding.DRY_RESISTANCE if s.dry != 0 else 0
     friction.holding |= Holding.FLANK_FRICTION if friction.flanks != 0 else 0
-    s.noting = int(scene.run.exposures > 0 or friction.rubs != 0)
-    if friction.rubs == 0:
+    s.noting = int(scene.run.exposures > 0 or friction.any_friction != 0)
+    if friction.any_friction == 0:
         return
     _add_joints(s, scene, scene.geometry)
     friction.pinion_lever = float(s.base_pitch) / float(s.pinion_radius)
     friction.gear_lever = float(s.base_pitch) / float(s.gear_radius)
     friction.radii = 1.0 / float(s.sum_curvature)
-    friction.pinion_bend = float(s.length_unit) / float(s.pinion_radius)
-    friction.gear_bend = float(s.length_unit) / float(s.gear_radius)
+    friction.pinion_lever_slope = float(s.length_unit) / float(s.pinion_radius)
+    friction.gear_lever_slope = float(s.length_unit) / float(s.gear_radius)
     friction.cosine, friction.sine = (
         math.cos(2.0 * scene.gears.pressure_angle),
         math.sin(2.0 * scene.gears.pressure_angle),
@@ -95,12 +95,12 @@ _JOINTS = {"pinion hub": PINION_HUB, "gear hub": GEAR_HUB, "pin": PIN}
 
 def _add_ageing(s: Record, joint: Joint, base_radius: float) -> None:
     """Set what the coefficient of a joint depends on; ways are on the base circle."""
-    friction, place = s.friction, _JOINTS[joint.name]
-    friction.coefficient[place], friction.rise[place] = joint.coefficient, joint.rise
+    friction, index = s.friction, _JOINTS[joint.name]
+    friction.coefficient[index], friction.rise[index] = joint.coefficient, joint.rise
     if joint.rise > 0.0:
         friction.ages = 1
-        friction.ageing_rate[place] = float(s.time_unit) / joint.ageing_time
-        friction.forgetting[place] = (
+        friction.ageing_rate[index] = float(s.time_unit) / joint.ageing_time
+        friction.forgetting[index] = (
             float(s.length_unit) * joint.sliding_radius / base_radius / joint.memory_length
         )
 
@@ -143,7 +143,7 @@ class Limits:
     def finish(self, s: Record, tables: Tables) -> None:
         """Lay out the loading branch, of all materials together where their shares do not change."""
         if self._needed:
-            mixed = self._loading.sum(axis=0) if s.by_place == 0 else self._loading
+            mixed = self._loading.sum(axis=0) if s.covered_by_position == 0 else self._loading
             s.friction.loading_at = tables.add(mixed.ravel())
 
 

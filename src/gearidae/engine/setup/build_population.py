@@ -166,12 +166,12 @@ def _numbers(s: Record, tables: Tables, scene: Scene, radii: Floats, materials: 
             math.pi * radii[rows] * units / force if shear else 1.0
         )
         parts.append((rows, laws, which))
-    places = {law: tables.add(asperity_table(law, far)) for law, far in reach.items()}
+    offsets = {law: tables.add(asperity_table(law, far)) for law, far in reach.items()}
     areas = {
         law: tables.add(asperity_table(ContactArea(law), far)) if shear else 0 for law, far in reach.items()
     }
     for rows, laws, which in parts:
-        numbers[rows, K_TABLE] = np.array([places[law] for law in laws])[which]
+        numbers[rows, K_TABLE] = np.array([offsets[law] for law in laws])[which]
         numbers[rows, K_AREA] = np.array([areas[law] for law in laws])[which]
     return numbers
 

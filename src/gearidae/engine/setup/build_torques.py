@@ -112,7 +112,7 @@ def add_torques(s: Record, tables: Tables, scene: GearScene, begin: float) -> No
     s.tied = int(is_held(scene))
     s.law_columns = len(sampled_laws(scene))
     set_run(s, tables, scene, knots, begin)
-    _set_looks(s, waves, scene)
+    _set_rest_search_step(s, waves, scene)
     # a torque that knows the motion vibrates with it, and is looked at in each step
     laws = scene.drive.law is not None or scene.load.law is not None
     knows_motion = laws or s.torque["speed_gain"].any() or s.torque["takes_angle"].any()
@@ -136,16 +136,19 @@ def _add_coefficients(s: Record, scene: GearScene, shaft: int, table: Drive | Lo
             torque.acts |= 1 << k
 
 
-def _set_looks(s: Record, waves: list[Floats], scene: GearScene) -> None:
+def _set_rest_search_step(s: Record, waves: list[Floats], scene: GearScene) -> None:
     """Set how often the torques of what is held are looked at, and what is known of their packed harmonics."""
     fastest = 0.0
     for harmonics in waves:
         amplitudes, frequencies = abs(harmonics[0::3]), abs(harmonics[1::3])
         fastest = max(fastest, float(frequencies.max(initial=0.0)))
-        s.rest_bend += float((amplitudes * frequencies**2).sum())
-    s.rest_look = 2.0 * math.pi / (LOOKS_PER_PERIOD * fastest) if fastest > 0.0 else math.inf
+        s.rest_margin_curvature += float((amplitudes * frequencies**2).sum())
+    s.rest_search_step = 2.0 * math.pi / (LOOKS_PER_PERIOD * fastest) if fastest > 0.0 else math.inf
     if scene.drive.law is not None or scene.load.law is not None:
-        s.rest_look, s.rest_bend = min(float(s.rest_look), float(s.end - s.start) / LAW_LOOKS), math.inf
+        s.rest_search_step, s.rest_margin_curvature = (
+            min(float(s.rest_search_step), float(s.end - s.start) / LAW_LOOKS),
+            math.inf,
+        )
     both = (*scene.drive.harmonic, *scene.load.harmonic)
     period = common_period(h.frequency for h in both if h.frequency is not None)
     s.common_period = period / float(s.time_unit)
@@ -185,8 +188,8 @@ def set_run(s: Record, tables: Tables, scene: Scene, knots: set[float], begin: f
     s.root_limit, s.root_spacing = ROOT_LIMIT, ROOT_SPACING
 
 
-def set_stop(s: Record, scene: GearScene, place: float) -> None:
+def set_stop(s: Record, scene: GearScene, position: float) -> None:
     """Set what ends the run before its time."""
     word, _, turns = scene.run.stop.partition(" ")
-    s.stop, s.stop_from = STOPS.index(word), place
+    s.stop, s.stop_from = STOPS.index(word), position
     s.stop_pitches = float(turns or 0.0) * scene.gears.gear_teeth

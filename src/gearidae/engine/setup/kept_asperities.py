@@ -21,10 +21,10 @@ FIRST: Final = 5  # words in front of the asperities
 
 def joined_asperities(m: Model) -> Floats:
     """Return the joined asperities of all pairs by their indices among all, in rising order."""
-    places = [
+    indices = [
         joined_candidates(m, k)[INDEX] for k in range(m.scene.histories) if m.state.history[k].pair != EMPTY
     ]
-    return np.sort(np.concatenate([np.empty(0), *places]))
+    return np.sort(np.concatenate([np.empty(0), *indices]))
 
 
 def kept_asperities(m: Model) -> Floats:

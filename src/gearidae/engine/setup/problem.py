@@ -26,7 +26,7 @@ from gearidae.engine.model.state import (
 )
 from gearidae.engine.observers.exposures.bins import exposures_of
 from gearidae.engine.observers.extremes.units import extremes_in_si
-from gearidae.engine.observers.finish import look_at
+from gearidae.engine.observers.finish import finish_for_look
 from gearidae.engine.observers.standing.judge import Judge
 from gearidae.engine.pairs.orbit import orbit_anew
 from gearidae.engine.setup import checkpoint as checkpoints
@@ -106,7 +106,7 @@ class Problem:
     def __post_init__(self) -> None:
         """Note where the model lies."""
         self.addresses = Addresses(self.model)
-        self.judge = Judge(self.model, self.addresses.place)
+        self.judge = Judge(self.model, self.addresses.base)
 
     @property
     def time_unit(self) -> float:
@@ -142,7 +142,7 @@ class Problem:
         s.phase_high = min(PHASE_HIGH, 1.0 / (float(weights[PHASE]) * sys.float_info.epsilon))
         s.balance_error = ERRORS * rtol
         s.flight_parts = math.ceil((PARTS_RTOL / rtol) ** (1.0 / 8.0))
-        s.friction.blur = rtol * float(self.tolerance_scale[U])
+        s.friction.gap_tolerance = rtol * float(self.tolerance_scale[U])
         felt = FELT * rtol * float(self.tolerance_scale[V])
         s.torque_omega = max(
             self._fastest(shaft, felt / float(share) if share > 0.0 else math.inf)
@@ -202,7 +202,7 @@ class Problem:
         self.judge.follow(time)
         m, exposures, balance, extremes = self.model, exposures_of(self.model), None, None
         before, exposed = (copied(m.state), copied(m.work)), exposures.copy()
-        look_at(self.addresses.place, time, state, rates)
+        finish_for_look(self.addresses.base, time, state, rates)
         if m.scene.follow.balance:
             energies = in_si(ENERGY_SUMS, m.state.energy, m.scene) | in_si(
                 ENERGY_NOW, m.work.energy_now, m.scene
@@ -264,7 +264,7 @@ class Problem:
         restore_asperities(m, state, joined)
         set_all_branches(m)
         time = float(m.state.time)
-        m.work.quadrature.time = m.work.resistance.time = m.work.lag_time = time
+        m.work.quadrature.time = m.work.resistance.time = m.work.adhesion_lag_time = time
         m.work.driver.time = time
         return time
 

@@ -18,7 +18,7 @@ class Start:
     ----------
     time : float
         When the run begins [s].
-    place : float, optional
+    position : float, optional
         How far the gear has turned by then, in pitches; None where the scene says it.
     scene : Scene, optional
         Of the run that this one goes on from.
@@ -37,7 +37,7 @@ class Start:
     """
 
     time: float = 0.0
-    place: float | None = None
+    position: float | None = None
     scene: Scene | None = None
     words: Floats | None = None
     began: float = 0.0

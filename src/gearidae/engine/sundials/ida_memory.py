@@ -37,7 +37,7 @@ class Functions(NamedTuple):
     newton: Ints
 
 
-class Places(NamedTuple):
+class FunctionOffsets(NamedTuple):
     """Where SUNDIALS keeps the functions of linear and nonlinear solvers.
 
     See `gearidae.engine.sundials.names.places` and `newton_places`.
@@ -50,9 +50,9 @@ class Places(NamedTuple):
 @compiled(makes_arrays=True)
 def open_solver(
     handles: Ints,
-    place: int,
+    address: int,
     functions: Functions,
-    places: Places,
+    offsets: FunctionOffsets,
     vectors: tuple[Floats, ...],
     most_failures: int,
 ) -> int:
@@ -62,14 +62,14 @@ def open_solver(
     ----------
     handles : ndarray of int64, shape (HANDLES,)
         Filled in.
-    place : int
+    address : int
         Of the model, from `Addresses`, which must outlive the solver, as the vectors must.
     vectors : tuple of three ndarrays, shape (n,)
         State, rates and work space.
     most_failures : int
         Of Newton's iteration in one step.
     """
-    m, (y, yp, dky) = model_at(place), vectors
+    m, (y, yp, dky) = model_at(address), vectors
     m.work.adams.native_newton = 1 if functions.newton.size > 0 else 0
     n = y.size
     if m.work.adams.native_newton != 0:  # nodes are eliminated
@@ -87,13 +87,13 @@ def open_solver(
     handles[IDA] = solver
     flag |= sun.IDAInit(solver, functions.model[0], m.state.time, handles[Y], handles[YP])
     flag |= sun.IDAWFtolerances(solver, functions.model[2])
-    flag |= sun.IDASetUserData(solver, place)
+    flag |= sun.IDASetUserData(solver, address)
     if functions.newton.size > 0:
         handles[NEWTON] = sun.SUNNonlinSolNewEmpty(context)
-        memory.replace(handles[NEWTON], places.newton, functions.newton)
+        memory.replace(handles[NEWTON], offsets.newton, functions.newton)
         flag |= sun.IDASetNonlinearSolver(solver, handles[NEWTON])
     else:
-        _make_linear_solver(handles, functions.steps, places.linear, m, y)
+        _make_linear_solver(handles, functions.steps, offsets.linear, m, y)
         flag |= sun.IDASetLinearSolver(solver, handles[LINEAR], handles[MATRIX])
         flag |= sun.IDASetJacFn(solver, functions.model[1])
     flag |= sun.IDASetMaxNumSteps(solver, -1)

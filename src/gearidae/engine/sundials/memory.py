@@ -45,7 +45,7 @@ def _system(typing: Any, solver: Any) -> Any:
     return types.Tuple(kinds)(solver), ask  # type: ignore[no-untyped-call]
 
 
-STEP: Final = "IDAGetCurrentStep"
+CURRENT_STEP: Final = "IDAGetCurrentStep"
 
 
 def _step(typing: Any, solver: Any) -> Any:
@@ -55,7 +55,7 @@ def _step(typing: Any, solver: Any) -> Any:
         word = ir.IntType(64)
         cell = cgutils.alloca_once(builder, ir.DoubleType())  # type: ignore[no-untyped-call]
         function = cgutils.get_or_insert_function(  # type: ignore[no-untyped-call]
-            builder.module, ir.FunctionType(ir.IntType(32), [word, word]), STEP
+            builder.module, ir.FunctionType(ir.IntType(32), [word, word]), CURRENT_STEP
         )
         builder.call(function, [values[0], builder.ptrtoint(cell, word)])
         return builder.load(cell)

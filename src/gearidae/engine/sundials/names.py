@@ -20,7 +20,7 @@ from llvmlite import binding
 from numba import types
 from numpy.typing import NDArray
 
-from gearidae.engine.sundials.memory import STEP, SYSTEM
+from gearidae.engine.sundials.memory import CURRENT_STEP, SYSTEM
 
 # load_library_permanently must come before any compiled (or cached) function that calls into the library is loaded.
 
@@ -45,12 +45,12 @@ def unavailable() -> str:
             binding.load_library_permanently(str(library))
     except RuntimeError as error:
         return f"the SUNDIALS library cannot be loaded ({error})"
-    wanted = (*_NAMES, *OF_SOLVERS, *OF_NEWTON, "SUNNonlinSol_Newton", SYSTEM, STEP)
+    wanted = (*_NAMES, *OF_SOLVERS, *OF_NEWTON, "SUNNonlinSol_Newton", SYSTEM, CURRENT_STEP)
     if missing := [name for name in wanted if binding.address_of_symbol(name) is None]:
         return f"the SUNDIALS library lacks {', '.join(missing)}"
     try:
-        places()
-        newton_places()
+        linear_solver_offsets()
+        newton_offsets()
     except RuntimeError as error:
         return str(error)
     return ""
@@ -89,7 +89,7 @@ OF_NEWTON: Final = (
 
 
 @cache
-def places() -> NDArray[np.int64]:
+def linear_solver_offsets() -> NDArray[np.int64]:
     """Where SUNDIALS keeps a linear solver's functions, found by what lies there.
 
     A linear solver is a record of pointers: its content, a table of functions, its context. Where the table lies in
@@ -109,7 +109,7 @@ def places() -> NDArray[np.int64]:
     with _bench() as (context, vector, numbers):
         matrix = _call("SUNDenseMatrix", ctypes.c_int32(1), ctypes.c_int32(1), context)
         linear = _call("SUNLinSol_Dense", vector, _address(matrix), context)
-        table = _table_place(linear, context)
+        table = _table_offset(linear, context)
         functions = _operations(linear, table, 12, OF_SOLVERS, "linear solvers")
         if _words(_words(vector.value, 1)[0], 2)[1] != numbers.ctypes.data:
             raise RuntimeError("SUNDIALS lays out its vectors in an unknown way")
@@ -119,8 +119,8 @@ def places() -> NDArray[np.int64]:
 
 
 @cache
-def newton_places() -> NDArray[np.int64]:
-    """Where SUNDIALS keeps a nonlinear solver's functions, found like `places`.
+def newton_offsets() -> NDArray[np.int64]:
+    """Where SUNDIALS keeps a nonlinear solver's functions, found like `linear_solver_offsets`.
 
     Returns
     -------
@@ -134,7 +134,7 @@ def newton_places() -> NDArray[np.int64]:
     """
     with _bench() as (context, vector, _):
         newton = _call("SUNNonlinSol_Newton", vector, context)
-        table = _table_place(newton, context)
+        table = _table_offset(newton, context)
         functions = _operations(newton, table, 13, OF_NEWTON, "nonlinear solvers")
         _call("SUNNonlinSolFree_Newton", _address(newton))
     return np.array([table, *functions], dtype=np.int64)
@@ -153,7 +153,7 @@ def _bench() -> Iterator[tuple[ctypes.c_int64, ctypes.c_int64, NDArray[np.float6
         _call("SUNContext_Free", ctypes.byref(context))
 
 
-def _table_place(record: int, context: ctypes.c_int64) -> int:
+def _table_offset(record: int, context: ctypes.c_int64) -> int:
     """Index of the table of functions in a record: just before the context; 0 if that is not there."""
     fields = _words(record, 4)
     return fields.index(context.value) - 1 if context.value in fields[1:] else 0

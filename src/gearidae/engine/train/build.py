@@ -182,7 +182,7 @@ def _pair(scene: TrainScene, train: Train, k: int, drive: Drive, load: Load) -> 
 
 def _alone(m: Model) -> Addresses:
     """Have the model of a pair be one of a mesh: friction is that of the train's shafts, and forces are noted."""
-    m.scene.friction.on = m.scene.friction.rubs = 0
+    m.scene.friction.any_dry = m.scene.friction.any_friction = 0
     m.scene.noting = 1
     return Addresses(m)
 
@@ -195,13 +195,13 @@ def _add_meshes(
     scene: TrainScene,
     train: Train,
     problems: tuple[Problem, ...],
-    places: tuple[Addresses, ...],
+    addresses: tuple[Addresses, ...],
 ) -> None:
     """Set the constants of the meshes."""
     load = _teeth_at(train, train.load)
-    for mesh, record, problem, address in zip(train.meshes, tm.meshes, problems, places, strict=True):
+    for mesh, record, problem, address in zip(train.meshes, tm.meshes, problems, addresses, strict=True):
         s, geometry = problem.model.scene, mesh.geometry
-        record["place"], record["a"], record["b"] = address.place, mesh.a, mesh.b
+        record["address"], record["a"], record["b"] = address.base, mesh.a, mesh.b
         for unit in ("time_unit", "length_unit", "force_unit"):
             record[unit] = s[unit]
         record["driver_radius"], record["driven_radius"] = (
@@ -307,7 +307,7 @@ def _add_tolerances(tm: TrainModel, scene: TrainScene, problems: tuple[Problem, 
         free = float(s.free_step) or math.inf
         step = min(longest, free) * float(mesh["time_unit"])
         tm.train[0].longest_step = min(float(tm.train[0].longest_step) or math.inf, step)
-        rest = float(s.rest_look) * float(mesh["time_unit"])
+        rest = float(s.rest_search_step) * float(mesh["time_unit"])
         tm.train[0].rest_step = min(float(tm.train[0].rest_step) or math.inf, rest)
     for i, own in enumerate(radii):
         tm.weights[i] = 1.0 / (rtol * min(angle for angle, _ in own))
@@ -369,4 +369,4 @@ def _set_start(
         shaft["begin"] = y[i]
     for mesh, problem in zip(train.meshes, problems, strict=True):
         state = problem.model.state
-        state.turns, state.first_place = math.floor(mesh.phase), mesh.phase
+        state.whole_pitches, state.first_position = math.floor(mesh.phase), mesh.phase

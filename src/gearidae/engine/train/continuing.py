@@ -197,7 +197,7 @@ def _carry_state(old: TrainProblem, new: TrainProblem) -> None:
             records[name] = others[name]
     train = tm.train[0]
     train.step = min(float(train.step), 0.1 * float(train.tau))
-    train.stop_from = float(train.turns) + float(tm.y[train.load])
+    train.stop_from = float(train.whole_pitches) + float(tm.y[train.load])
 
 
 def _carry_meshes(old: TrainProblem, new: TrainProblem) -> None:
@@ -210,7 +210,7 @@ def _carry_meshes(old: TrainProblem, new: TrainProblem) -> None:
     if follows != followed:
         for pair in new.problems:
             assign(pair.model.state.energy, np.zeros(1, STATE["energy"])[0])
-            for name in ("lag", "lag_power", "lag_rate"):
+            for name in ("lag", "adhesion_lag_power", "adhesion_lag_power_rate"):
                 pair.model.state.history[name] = 0.0
     write_stored(new.model, new.model.y, after)
     if follows == followed:

@@ -35,7 +35,7 @@ from gearidae.engine.train.record import take_from_mesh
 from gearidae.engine.train.rest import any_held, rest_guard, switch_rest
 from gearidae.engine.train.sticking import sticking_guard, switch_sticking
 
-_TINY: Final = 1e-300
+_ABOVE_ZERO: Final = 1e-300
 ROOTS_HIGH: Final = 1_000
 """More roots than this within `CROWDED` of the time is chatter."""
 CROWDED: Final = 1e-12
@@ -49,7 +49,7 @@ FALLEN_AT_ONCE: Final = 4
 def train_way_left(tm: TrainModel, y: Floats) -> float:
     """Way of the load's gear to where the run ends, in pitches; infinite where time alone ends it."""
     train = tm.train[0]
-    return float(train.stop_pitches - abs(y[train.load] + train.turns - train.stop_from))
+    return float(train.stop_pitches - abs(y[train.load] + train.whole_pitches - train.stop_from))
 
 
 @compiled_once(TRAIN)
@@ -65,7 +65,7 @@ def train_guard(tm: TrainModel, t: float, y: Floats, evaluated: bool) -> float:
     train.guards += 1
     for k in range(len(tm.meshes)):
         mesh = tm.meshes[k]
-        m = model_at(mesh.place)
+        m = model_at(mesh.address)
         mesh_state(tm, k, m, y, tm.own)
         least = min(least, mesh_guard(m, t / mesh.time_unit, tm.own))
     if not evaluated and (train.flanks != 0 or any_held(tm)):
@@ -73,7 +73,7 @@ def train_guard(tm: TrainModel, t: float, y: Floats, evaluated: bool) -> float:
     if train.flanks != 0:
         least = min(least, sticking_guard(tm, y))
     least = min(least, rest_guard(tm, y), train_way_left(tm, y))
-    return least if least != 0.0 else _TINY
+    return least if least != 0.0 else _ABOVE_ZERO
 
 
 @compiled
@@ -82,7 +82,7 @@ def next_train_stop(tm: TrainModel) -> float:
     train = tm.train[0]
     stop = train.end
     for k in (train.drive_mesh, train.load_mesh):
-        m = model_at(tm.meshes[k].place)
+        m = model_at(tm.meshes[k].address)
         if m.state.next_knot < m.scene.knot_count:
             stop = min(stop, next_stop(m) * tm.meshes[k].time_unit)
     return float(stop)
@@ -94,7 +94,7 @@ def pass_knots(tm: TrainModel, t: float, out: TrainOutput) -> bool:
     train = tm.train[0]
     for k in range(len(tm.meshes)):
         mesh = tm.meshes[k]
-        m = model_at(mesh.place)
+        m = model_at(mesh.address)
         if m.state.next_knot < m.scene.knot_count and next_stop(m) * mesh.time_unit <= t * (1.0 + SAME):
             count = pass_knot(m, t / mesh.time_unit, tm.few, 0)
             take_from_mesh(tm, k, count, out)
@@ -110,7 +110,7 @@ def accept_all(tm: TrainModel, t: float, y: Floats) -> int:
     flying, beyond, n = 0, False, len(tm.shafts)
     for k in range(len(tm.meshes)):
         mesh = tm.meshes[k]
-        m = model_at(mesh.place)
+        m = model_at(mesh.address)
         mesh_state(tm, k, m, y, tm.own)
         time = t / mesh.time_unit
         accept(m, time, tm.own)
@@ -142,7 +142,7 @@ def _switch_mesh(tm: TrainModel, k: int, m: Model, t: float, y: Floats, out: Tra
         event = find_event(m, own, flank_of_history(m, history), m.state.history[history].pair, history)
         if event.touches or event.stretches or event.turns:
             if event.turns and tm.train[0].balance != 0:
-                adhesion_loss.event(m, own, event.coast, event.pair, event.k, event.gap)
+                adhesion_loss.event(m, own, event.flank, event.pair, event.k, event.gap)
             count = take_event(m, time, own, event, few, count)
     if m.scene.law_switches != 0 and set_law_sides(m, time, own):
         note_law_jump(m, time, own, True)
@@ -159,7 +159,7 @@ def switch_all(tm: TrainModel, t: float, y: Floats, out: TrainOutput) -> bool:
     train = tm.train[0]
     for _ in range(1 + FALLEN_AT_ONCE):
         for k in range(len(tm.meshes)):
-            _switch_mesh(tm, k, model_at(tm.meshes[k].place), t, y, out)
+            _switch_mesh(tm, k, model_at(tm.meshes[k].address), t, y, out)
         if switch_sticking(tm, t, y, out) if train.flanks != 0 else switch_rest(tm, t, y, out):
             # what it holds up is behind it at once: a step that is too long would see the shaft come to rest again
             train.step = min(train.step, 0.05 * train.tau)
@@ -178,12 +178,12 @@ def rebase_train(tm: TrainModel, y: Floats) -> None:
     train = tm.train[0]
     shift = train.period * math.floor(y[train.load] / train.period)
     y[train.load] -= shift
-    train.turns += shift
+    train.whole_pitches += shift
     for k in range(len(tm.meshes)):
         mesh = tm.meshes[k]
-        m = model_at(mesh.place)
+        m = model_at(mesh.address)
         pitches = math.floor(mesh.ratio * shift + 0.5)
-        m.state.turns += pitches
+        m.state.whole_pitches += pitches
         m.state.mesh_mark_below -= pitches
         m.state.mesh_mark_above -= pitches
         for i in range(m.scene.histories):

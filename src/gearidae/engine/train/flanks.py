@@ -70,7 +70,7 @@ def add_flank_friction(tm: TrainModel, k: int, m: Model, t: float, y: Floats) ->
     mesh, n = tm.meshes[k], len(tm.shafts)
     set_limits(m, t / mesh.time_unit, tm.own[W])
     to_own = mesh.time_unit / mesh.length_unit
-    turn = mesh.driver_radius * y[n + mesh.a] * to_own
+    surface_speed = mesh.driver_radius * y[n + mesh.a] * to_own
     into = out = power = across_x = across_y = 0.0
     for i in range(m.work.pair_forces.count):
         noted = m.work.pair_forces.pair[i]
@@ -86,7 +86,7 @@ def add_flank_friction(tm: TrainModel, k: int, m: Model, t: float, y: Floats) ->
             element = tm.elements[number]
             element.mesh, element.history, element.a, element.b = k, noted.history, mesh.a, mesh.b
             element.first, element.second, element.x, element.y = r1, -r2, x, z
-            bend = lever_rate(m, noted, turn, tm.own[W]) * mesh.length_unit / mesh.time_unit**2
+            bend = lever_rate(m, noted, surface_speed, tm.own[W]) * mesh.length_unit / mesh.time_unit**2
             element.bend = bend + RETURN * speed / mesh.time_unit
             tm.box[LIMIT, number] = noted.limit * mesh.force_unit
             tm.box[UNIT, number] = NO_FORCE * mesh.force_unit

@@ -57,7 +57,7 @@ SHAFT: Final = record_type(
 )
 
 MESH: Final = record_type(
-    ("place", INT),  # where its model lies, see `gearidae.engine.model.addresses`
+    ("address", INT),  # where its model lies, see `gearidae.engine.model.addresses`
     ("a", INT),  # shafts of the driver and of the driven gear
     ("b", INT),
     ("time_unit", REAL),  # of its model [s]
@@ -124,7 +124,7 @@ TRAIN: Final = record_type(
     ("rest_step", REAL),  # longest while a shaft is held [s]
     ("tau", REAL),  # fastest time of the meshes [s]
     # state
-    ("turns", REAL),  # whole pitches taken out of the load's angle
+    ("whole_pitches", REAL),  # whole pitches taken out of the load's angle
     ("time", REAL),  # accepted [s]
     ("step", REAL),  # next to be tried [s]
     ("guard", REAL),  # least guard at the accepted time

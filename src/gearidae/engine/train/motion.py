@@ -62,9 +62,9 @@ def mesh_state(tm: TrainModel, k: int, m: Model, y: Floats, out: Floats) -> Mesh
                 break
             e = error_at(m, u, out[PHASE])
     to_own = mesh.time_unit / length
-    turn, w = mesh.driver_radius * y[n + a] * to_own, mesh.driven_radius * y[n + b] * to_own
+    surface_speed, w = mesh.driver_radius * y[n + a] * to_own, mesh.driven_radius * y[n + b] * to_own
     out[W] = w
-    out[V] = (1.0 - e.pinion) * turn - (1.0 + e.gear) * w
+    out[V] = (1.0 - e.pinion) * surface_speed - (1.0 + e.gear) * w
     return e
 
 
@@ -87,7 +87,7 @@ def _pushes(m: Model) -> tuple[float, float, float]:
 def _add_mesh(tm: TrainModel, k: int, t: float, y: Floats, dy: Floats) -> None:
     """Put the forces of a mesh on its shafts and their hubs, and write its powers."""
     mesh, n, shafts, own = tm.meshes[k], len(tm.shafts), tm.shafts, tm.own
-    m = model_at(mesh.place)
+    m = model_at(mesh.address)
     e = mesh_state(tm, k, m, y, own)
     sums = forces_at(m, t / mesh.time_unit, own)
     drive, coast, film = _pushes(m)
@@ -127,7 +127,7 @@ def _add_torques(tm: TrainModel, t: float, y: Floats) -> None:
     """Put the torques of drive and load on their shafts, and the force of the pin on its hub."""
     train, n, shafts, own = tm.train[0], len(tm.shafts), tm.shafts, tm.own
     mesh = tm.meshes[train.drive_mesh]
-    m = model_at(mesh.place)
+    m = model_at(mesh.address)
     mesh_state(tm, train.drive_mesh, m, y, own)
     time, angle = t / mesh.time_unit, torque_angle(m, DRIVE, own[U], own[PHASE])
     speed = mesh.driver_radius * y[n + train.drive] * mesh.time_unit / mesh.length_unit
@@ -142,7 +142,7 @@ def _add_torques(tm: TrainModel, t: float, y: Floats) -> None:
         shaft.load_y += train.sine * x + train.cosine * z
         train.pin = math.hypot(x, z)
     mesh = tm.meshes[train.load_mesh]
-    m = model_at(mesh.place)
+    m = model_at(mesh.address)
     mesh_state(tm, train.load_mesh, m, y, own)
     time, angle = t / mesh.time_unit, torque_angle(m, LOAD, own[U], own[PHASE])
     unit = mesh.force_unit * mesh.driven_radius
@@ -200,7 +200,7 @@ def torque_slopes(tm: TrainModel, t: float, y: Floats) -> tuple[float, float]:
     """
     train, n, own = tm.train[0], len(tm.shafts), tm.own
     mesh = tm.meshes[train.drive_mesh]
-    m, drive, load = model_at(mesh.place), 0.0, 0.0
+    m, drive, load = model_at(mesh.address), 0.0, 0.0
     if not is_constant(m, DRIVE):
         mesh_state(tm, train.drive_mesh, m, y, own)
         time, angle = t / mesh.time_unit, torque_angle(m, DRIVE, own[U], own[PHASE])
@@ -210,7 +210,7 @@ def torque_slopes(tm: TrainModel, t: float, y: Floats) -> tuple[float, float]:
         change = abs(faster - driving_force(m, DRIVE, time, angle, speed))
         drive = change * radius * mesh.force_unit * mesh.driver_radius
     mesh = tm.meshes[train.load_mesh]
-    m = model_at(mesh.place)
+    m = model_at(mesh.address)
     if not is_constant(m, LOAD):
         mesh_state(tm, train.load_mesh, m, y, own)
         time, angle = t / mesh.time_unit, torque_angle(m, LOAD, own[U], own[PHASE])

@@ -10,7 +10,7 @@ from gearidae.compiled import compiled
 from gearidae.engine.laws.pairs import stored_energy
 from gearidae.engine.model.addresses import model_at
 from gearidae.engine.model.state import PHASE, U
-from gearidae.engine.observers.adhesion_loss import joining_lag
+from gearidae.engine.observers.adhesion_loss import total_adhesion_lag
 from gearidae.engine.pairs.tooth_pairs import flank_gaps, rigid_separation
 from gearidae.engine.train.formula import state_at
 from gearidae.engine.train.layout import OF_MESH, OF_SHAFT, TrainModel
@@ -23,7 +23,7 @@ COMMON_COLUMNS: Final = 3
 NEAR: Final = 0.01
 """Share by which the force of a stage may lie beside that of the step's polynomial, at most: within this of an extreme
 so far a step is looked at closely."""
-LOOKS: Final = 9
+FORCE_SAMPLES: Final = 9
 """Places of a step at which the force is then looked at, before its extreme is bracketed."""
 HALVINGS: Final = 40
 """Of the bracket by the golden section."""
@@ -34,7 +34,7 @@ _GOLDEN: Final = 0.5 * (math.sqrt(5.0) - 1.0)
 def shaft_angle(tm: TrainModel, i: int, y: Floats) -> float:
     """Angle of a shaft since the start [rad]."""
     train, shaft = tm.train[0], tm.shafts[i]
-    turned = (train.turns + y[train.load]) / train.per_radian
+    turned = (train.whole_pitches + y[train.load]) / train.per_radian
     departure = 0.0 if i == train.load else y[i] - shaft.begin
     return float(shaft.ratio * turned + departure)
 
@@ -51,7 +51,7 @@ def observe_train(tm: TrainModel, t: float, y: Floats, row: Floats) -> None:
         at += SHAFT_COLUMNS
     for k in range(len(tm.meshes)):
         mesh = tm.meshes[k]
-        m = model_at(mesh.place)
+        m = model_at(mesh.address)
         mesh_state(tm, k, m, y, tm.own)
         drive, coast, touching = flank_gaps(m, tm.own)
         row[at], row[at + 1] = mesh.force, mesh.error
@@ -79,14 +79,14 @@ def _force_at(tm: TrainModel, k: int, share: float, h: float) -> float:
 @compiled
 def _extreme_force(tm: TrainModel, k: int, end: float, h: float, sign: float) -> tuple[float, float]:
     """Extreme of the force of a mesh times a sign in a step up to a share of it, and its share."""
-    best, place = -math.inf, 0.0
-    for i in range(LOOKS):
-        share = end * i / (LOOKS - 1)
+    best, best_share = -math.inf, 0.0
+    for i in range(FORCE_SAMPLES):
+        share = end * i / (FORCE_SAMPLES - 1)
         value = sign * _force_at(tm, k, share, h)
         if value > best:
-            best, place = value, share
-    part = end / (LOOKS - 1)
-    low, high = max(place - part, 0.0), min(place + part, end)
+            best, best_share = value, share
+    part = end / (FORCE_SAMPLES - 1)
+    low, high = max(best_share - part, 0.0), min(best_share + part, end)
     a, b = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
     at_a, at_b = sign * _force_at(tm, k, a, h), sign * _force_at(tm, k, b, h)
     for _ in range(HALVINGS):
@@ -100,7 +100,7 @@ def _extreme_force(tm: TrainModel, k: int, end: float, h: float, sign: float) ->
             at_b = sign * _force_at(tm, k, b, h)
     middle = 0.5 * (low + high)
     value = sign * _force_at(tm, k, middle, h)
-    return (value, middle) if value > best else (best, place)
+    return (value, middle) if value > best else (best, best_share)
 
 
 @compiled
@@ -175,7 +175,7 @@ def note_separation(tm: TrainModel, y: Floats) -> None:
     """Take the smallest distances of the flanks at a state: a gap that turns round is an accepted time."""
     for k in range(len(tm.meshes)):
         mesh = tm.meshes[k]
-        m = model_at(mesh.place)
+        m = model_at(mesh.address)
         mesh_state(tm, k, m, y, tm.own)
         distance = rigid_separation(m, tm.own[U], tm.own[PHASE]) * mesh.length_unit
         mesh.separation = min(mesh.separation, distance)
@@ -234,10 +234,10 @@ def write_stored(tm: TrainModel, y: Floats, out: Floats) -> None:
     last = 2 * len(tm.shafts) + OF_SHAFT * len(tm.shafts)
     for k in range(len(tm.meshes)):
         mesh = tm.meshes[k]
-        m, unit = model_at(mesh.place), mesh.force_unit * mesh.length_unit
+        m, unit = model_at(mesh.address), mesh.force_unit * mesh.length_unit
         mesh_state(tm, k, m, y, tm.own)
-        (stored, pending), lag = stored_energy(m, tm.own), joining_lag(m)
+        (stored, pending), adhesion_lag = stored_energy(m, tm.own), total_adhesion_lag(m)
         out[3 * k] = (stored - pending) * unit
-        out[3 * k + 1] = (m.state.energy.adhesion_loss + pending - lag) * unit
-        radius = m.state.energy.radius_work - (lag if mesh.radius_power != 0 else 0.0)
+        out[3 * k + 1] = (m.state.energy.adhesion_loss + pending - adhesion_lag) * unit
+        radius = m.state.energy.radius_work - (adhesion_lag if mesh.radius_power != 0 else 0.0)
         out[3 * k + 2] = y[last + OF_MESH * k + 2] + radius * unit

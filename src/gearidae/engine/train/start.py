@@ -29,10 +29,10 @@ def begin_train(tm: TrainModel) -> None:
     t = train.time = train.start
     for k in range(len(tm.meshes)):
         mesh = tm.meshes[k]
-        m = model_at(mesh.place)
+        m = model_at(mesh.address)
         e = mesh_state(tm, k, m, y, tm.own)
-        m.state.initial_lead = tm.own[U] + e.value
-        begin(mesh.place, t / mesh.time_unit, tm.own)
+        m.state.initial_pinion_lead = tm.own[U] + e.value
+        begin(mesh.address, t / mesh.time_unit, tm.own)
         energy = m.state.energy
         energy.adhesion_loss = energy.radius_work = 0.0
     take_up(tm)
@@ -51,7 +51,7 @@ def take_up(tm: TrainModel) -> None:
     train = tm.train[0]
     for k in range(len(tm.meshes)):
         mesh = tm.meshes[k]
-        m, time = model_at(mesh.place), train.time / mesh.time_unit
+        m, time = model_at(mesh.address), train.time / mesh.time_unit
         mesh_state(tm, k, m, tm.y, tm.own)
         set_law_window(m)
         if m.scene.law_switches != 0:
@@ -65,4 +65,4 @@ def take_up(tm: TrainModel) -> None:
 @compiled
 def write_own_state(tm: TrainModel, k: int) -> None:
     """Write the state of a mesh's pair in its own units to ``tm.own``."""
-    mesh_state(tm, k, model_at(tm.meshes[k].place), tm.y, tm.own)
+    mesh_state(tm, k, model_at(tm.meshes[k].address), tm.y, tm.own)

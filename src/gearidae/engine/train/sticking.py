@@ -59,7 +59,7 @@ def sticking_guard(tm: TrainModel, y: Floats) -> float:
     """
     least = math.inf
     for k in range(len(tm.meshes)):
-        m = model_at(tm.meshes[k].place)
+        m = model_at(tm.meshes[k].address)
         for i in range(m.work.pair_forces.count if tm.meshes[k].flanks != 0 else 0):
             noted = m.work.pair_forces.pair[i]
             if m.state.history[noted.history].pair != noted.pair:
@@ -120,7 +120,7 @@ def _any_at_rest(tm: TrainModel) -> bool:
         if tm.shafts[i].rubs != 0 and tm.shafts[i].slip == 0.0:
             return True
     for k in range(len(tm.meshes)):
-        m = model_at(tm.meshes[k].place)
+        m = model_at(tm.meshes[k].address)
         for i in range(m.scene.histories if tm.meshes[k].flanks != 0 else 0):
             if m.state.history[i].slide == STUCK:
                 return True
@@ -132,7 +132,7 @@ def _begin_to_rub(tm: TrainModel, y: Floats) -> tuple[bool, bool]:
     """Give pairs that begin to rub their directions, and take those of others; whether any change, or are at rest."""
     changed = stands = False
     for k in range(len(tm.meshes)):
-        m = model_at(tm.meshes[k].place)
+        m = model_at(tm.meshes[k].address)
         for number in range(m.scene.histories if tm.meshes[k].flanks != 0 else 0):
             h, rubs = m.state.history[number], False
             for i in range(m.work.pair_forces.count if h.slide != 0 else 0):
@@ -160,13 +160,13 @@ def switch_sticking(tm: TrainModel, t: float, y: Floats, out: TrainOutput) -> bo
     stands = not alone and _margin(tm) < 0.5
     for k in range(len(tm.meshes)):
         if tm.meshes[k].flanks != 0:
-            note_directions(model_at(tm.meshes[k].place))
+            note_directions(model_at(tm.meshes[k].address))
     for i in range(n):
         tm.shafts[i].before = tm.shafts[i].slip
     changed, stopped = _begin_to_rub(tm, y)
     stands |= stopped
     for k in range(len(tm.meshes)):
-        m = model_at(tm.meshes[k].place)
+        m = model_at(tm.meshes[k].address)
         for i in range(m.work.pair_forces.count if tm.meshes[k].flanks != 0 else 0):
             noted = m.work.pair_forces.pair[i]
             slide = slide_of(m, noted)
@@ -191,7 +191,7 @@ def _record(tm: TrainModel, t: float, out: TrainOutput) -> None:
     """Record the directions that have changed, and begin and end rests of shafts."""
     for k in range(len(tm.meshes)):
         if tm.meshes[k].flanks != 0:
-            m = model_at(tm.meshes[k].place)
+            m = model_at(tm.meshes[k].address)
             take_from_mesh(tm, k, record_changes(m, t / tm.meshes[k].time_unit, tm.few, 0), out)
     for i in range(len(tm.shafts)):
         shaft = tm.shafts[i]
@@ -231,7 +231,7 @@ def _decide(tm: TrainModel, t: float, y: Floats) -> None:
         if element.mesh < 0:
             tm.shafts[element.a].slip = way
         else:
-            model_at(tm.meshes[element.mesh].place).state.history[element.history].slide = int(way)
+            model_at(tm.meshes[element.mesh].address).state.history[element.history].slide = int(way)
 
 
 @compiled
@@ -282,7 +282,7 @@ def _add_still(tm: TrainModel, y: Floats) -> bool:
             shaft.slip, added = 0.0, True
     for k in range(len(tm.meshes)):
         mesh = tm.meshes[k]
-        m, a, b = model_at(mesh.place), tm.shafts[mesh.a], tm.shafts[mesh.b]
+        m, a, b = model_at(mesh.address), tm.shafts[mesh.a], tm.shafts[mesh.b]
         for i in range(m.work.pair_forces.count if mesh.flanks != 0 else 0):
             noted = m.work.pair_forces.pair[i]
             slide = slide_of(m, noted)

@@ -52,8 +52,8 @@ def _travel(m: Model, at: GapMotion) -> _Travel:
     root = math.sqrt(m.scene.film_damping)
     x = root * (min(at.gap, 0.0) + 2.0 * least * (1.0 - math.sqrt(least / height)))
     root *= (least / height) ** 1.5
-    bend = -1.5 * at.rate * at.rate / height if at.gap > 0.0 else 0.0
-    return _Travel(x, root * at.rate, root * (bend + at.acceleration))
+    thinning = -1.5 * at.rate * at.rate / height if at.gap > 0.0 else 0.0
+    return _Travel(x, root * at.rate, root * (thinning + at.acceleration))
 
 
 @compiled

@@ -24,15 +24,15 @@ def _by_speed(m: Model, shaft: int, angle: float, speed: float, value: float) ->
 
 
 @compiled(inline=True)
-def _loss(m: Model, shaft: int, h: float, angle: float, travel: float, turn: Ends, value: float) -> float:
+def _loss(m: Model, shaft: int, h: float, angle: float, travel: float, speeds: Ends, value: float) -> float:
     e, torque = m.state.energy, m.scene.torque[shaft]
     if torque.drag != 0.0:
-        cube, error = integral_of_cube(h, travel, turn)
+        cube, error = integral_of_cube(h, travel, speeds)
         value += torque.drag * cube
         e.drag_loss += torque.drag * cube
         e.loss_error += torque.drag * error
     if torque.viscous != 0.0:
-        square, error = integral_of_square(h, travel, turn)
+        square, error = integral_of_square(h, travel, speeds)
         value += torque.viscous * square
         e.drag_loss += torque.viscous * square
         e.loss_error += torque.viscous * error

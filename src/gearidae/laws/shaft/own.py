@@ -25,7 +25,7 @@ from gearidae.torques import TorqueLaw, torque_law
 if TYPE_CHECKING:
     from gearidae.engine.model.state import Model
 
-STEP: Final = 1e-4
+DIFFERENCE_STEP: Final = 1e-4
 """Over tau, by which a law's rate looks to either side: contacts vibrate with about a radian a tau."""
 LOOKS: Final = 65
 """Times in a run at which the size of a law's torque is looked at,"""
@@ -297,7 +297,7 @@ def _around(
     m: Model, shaft: int, t: float, angle: float, speed: float, acceleration: float
 ) -> tuple[float, float]:
     """Times to either side of a time, in the run, between two knots and on one side of a switch, for a difference."""
-    low, high = max(t - STEP, 0.0), t + STEP
+    low, high = max(t - DIFFERENCE_STEP, 0.0), t + DIFFERENCE_STEP
     if m.work.law_until > 0.0:  # beyond, the law stays as it is there, and the difference would be too small
         low, high = max(low, m.work.law_from), min(high, m.work.law_until)
     if m.work.torque_switch[shaft] != 0:
@@ -325,7 +325,7 @@ def last_on_its_side(
     """
     if m.work.torque_switch[shaft] == 0 or on_its_side(m, shaft, t, angle, speed):
         return t, angle, speed
-    return t - STEP, *_moved(m, shaft, -STEP, angle, speed, acceleration)
+    return t - DIFFERENCE_STEP, *_moved(m, shaft, -DIFFERENCE_STEP, angle, speed, acceleration)
 
 
 @compiled(inline=True)

@@ -69,10 +69,10 @@ def _energy(m: Model, shaft: int, angle: float, value: float) -> float:
 
 
 @compiled
-def _loss(m: Model, shaft: int, h: float, angle: float, travel: float, turn: Ends, value: float) -> float:
+def _loss(m: Model, shaft: int, h: float, angle: float, travel: float, speeds: Ends, value: float) -> float:
     if _in_touch(m, shaft, angle):
         damping = m.scene.torque[shaft].spring_damping
-        square, error = integral_of_square(h, travel, turn)
+        square, error = integral_of_square(h, travel, speeds)
         value += damping * square
         m.state.energy.spring_loss += damping * square
         m.state.energy.loss_error += damping * error

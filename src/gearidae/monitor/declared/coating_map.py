@@ -358,8 +358,8 @@ def _rows(ds: xr.Dataset) -> Rows:
         line = lines.isel(line=number)
         held = ", ".join(f"{dim} = {line[dim].item():g}" for dim in further)
         yield held or "Frequency of the first impact response", "", ""
-        for place in picked:
-            point = line.isel(sam_fraction=int(place))
+        for index in picked:
+            point = line.isel(sam_fraction=int(index))
             value, spread = float(point["characteristic_frequency"]), float(point["uncertainty"])
             text = f"{value:.0f} +- {spread:.0f} Hz" if np.isfinite(value) else "-"
             slowest = float(point["min_gear_speed"])

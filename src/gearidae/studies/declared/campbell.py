@@ -104,19 +104,21 @@ def campbell(
     if base.run.sample_count < 2:
         raise SceneError("run.samples", base.run.samples, "must be a number: spectra need samples")
     try:
-        keep = read_keep(sorted({variable, "gear_speed"}), base)
+        selection = read_keep(sorted({variable, "gear_speed"}), base)
     except SceneError as error:
         raise SceneError("variable", variable, error.allowed) from None
-    if variable not in keep.columns(base):
+    if variable not in selection.columns(base):
         raise SceneError("variable", variable, f"must be sampled: one of {', '.join(_sampled(base))}")
     base, plan = _plan(base, held, ringing=ringing)
 
     def work(kept: RunCache | None) -> xr.Dataset:
-        runs = run_plan(plan, execution, kept, keep)
+        runs = run_plan(plan, execution, kept, selection)
         return _dataset(scene, plan, runs, variable, crossed)
 
     settings = [held.tolist(), variable, crossed]
-    return STUDY.compute(execution, base, work, settings, origin=scene, keep=keep, scenes=plan.scenes)
+    return STUDY.compute(
+        execution, base, work, settings, origin=scene, selection=selection, scenes=plan.scenes
+    )
 
 
 def _sampled(scene: Scene) -> tuple[str, ...]:
@@ -250,7 +252,7 @@ def _announced(_: Scene, __: int | None, *, speeds: Sequence[float], **___: Any)
 
 
 def _sentence(ds: xr.Dataset) -> str:
-    low, high = (float(ds["speed"][place]) for place in (0, -1))
+    low, high = (float(ds["speed"][options]) for options in (0, -1))
     met = [
         f"{int(multiple)} times at {float(speed):.4g} rad/s"
         for multiple, speed in zip(ds["multiple"].values, ds["critical_speed"].values, strict=True)
@@ -326,9 +328,9 @@ def picture(ds: xr.Dataset, ax: Axes | None = None, *, highest: float | None = N
     for number, multiple in enumerate(multiples):
         line_on_density(ax, speed, multiple * mesh, "" if number else "mesh and multiples")
         if multiple * mesh[-1] < top:
-            place: dict[str, Any] = {"xytext": (-2, 3), "textcoords": "offset points", "ha": "right"}
+            options: dict[str, Any] = {"xytext": (-2, 3), "textcoords": "offset points", "ha": "right"}
             ax.annotate(
-                f"{multiple}", (speed[-1], multiple * mesh[-1]), **place, color="white", fontsize="x-small"
+                f"{multiple}", (speed[-1], multiple * mesh[-1]), **options, color="white", fontsize="x-small"
             )
     for name, style in (("pinion", "--"), ("gear", ":")):
         line = mesh / int(ds.attrs[f"{name}_teeth"])

@@ -100,31 +100,33 @@ def convergence(
     """
     base, execution = prepared(scene, options, samples=2)
     names = list((_OF_GEARS if base.roller is None else _OF_ROLLERS) if of is None else of)
-    keep = _keep(base, names)
+    selection = _keep(base, names)
     ladder = _ladder(rtols)
     if not 0.0 < target < 1.0:
         raise SceneError("target", target, "must be above 0 and below 1")
     plan = _plan(base, ladder)
 
     def work(kept: Any) -> xr.Dataset:
-        runs = run_plan(plan, execution, kept, keep)
+        runs = run_plan(plan, execution, kept, selection)
         return _dataset(scene, runs, names, ladder, target)
 
     settings = [names, ladder.tolist(), target]
-    return STUDY.compute(execution, base, work, settings, origin=scene, keep=keep, scenes=plan.scenes)
+    return STUDY.compute(
+        execution, base, work, settings, origin=scene, selection=selection, scenes=plan.scenes
+    )
 
 
 def _keep(base: Scene, names: list[str]) -> OutputSelection:
     """Keep of each run what the quantities need; refuse what is none."""
     try:
-        keep = read_keep([*names, "steps"], base)
+        selection = read_keep([*names, "steps"], base)
     except SceneError as error:
         raise SceneError("of", error.value, error.allowed) from None
     known = by_name()
     for name in names:
         if name not in known or known[name].dims not in ((), ("time",)):
             raise SceneError("of", name, "has more than a number for each run, or for each sample")
-    return keep
+    return selection
 
 
 def _ladder(rtols: Sequence[float]) -> Floats:

@@ -141,8 +141,8 @@ def ensemble(
             ds = ds.assign_attrs(index_comment=NO_INDEX)
         return ds.assign_attrs(_titles(base, words, len(drawn.plan.scenes)))
 
-    keep = read_keep(("extremes", "energy_balance") if drawn.have_seeds else ("extremes",), base)
-    return run_study(drawn.plan, execution, {"ensemble": json.dumps(about)}, finish, keep=keep)
+    selection = read_keep(("extremes", "energy_balance") if drawn.have_seeds else ("extremes",), base)
+    return run_study(drawn.plan, execution, {"ensemble": json.dumps(about)}, finish, selection=selection)
 
 
 def figure_names(scene: Scene) -> tuple[str, ...]:

@@ -220,7 +220,7 @@ def picture(chart: xr.Dataset, ax: Axes | None = None) -> Axes:
         edgecolor="w",
         linewidth=line_width(0.4),
     )
-    _mark_crossings(ax, chart, across.places, along.places)
+    _mark_crossings(ax, chart, across.positions, along.positions)
     scale_axis(ax, "x", across)
     scale_axis(ax, "y", along)
     present = set(chart["outcome"].values.ravel().tolist())

@@ -107,14 +107,16 @@ def start_probability(
     times = _times(base, by)
     base = _followed(base, times)
     drawn = draw_members(base, vary, lambda of: plain_design(of, int(size), design, int(seed)))
-    plan, words, keep = drawn.plan, drawn.words, read_keep(("reached",), base)
+    plan, words, selection = drawn.plan, drawn.words, read_keep(("reached",), base)
 
     def work(kept: RunCache | None) -> xr.Dataset:
-        runs = along_members(run_plan(plan, execution, kept, keep), tuple(words))
+        runs = along_members(run_plan(plan, execution, kept, selection), tuple(words))
         return _dataset(scene, base, runs, times, confidence)
 
     settings = [times.tolist(), words, int(size), design, int(seed), confidence]
-    return STUDY.compute(execution, base, work, settings, origin=scene, keep=keep, scenes=plan.scenes)
+    return STUDY.compute(
+        execution, base, work, settings, origin=scene, selection=selection, scenes=plan.scenes
+    )
 
 
 def _times(scene: Scene, by: Sequence[Any] | float | str | None) -> Floats:

@@ -307,7 +307,7 @@ def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
 
     STUDY.require(ds)
     along = parameter_axis(ds["sam_fraction"])
-    percent = along.places
+    percent = along.positions
     ax = _torques_over(ds, percent, ax)
     ax.set_yscale("log")
     label_axis(ax.yaxis, f"starting torque on {ds.attrs.get('drive_shaft', 'the pinion')}", "N m")
@@ -354,7 +354,7 @@ def picture_of_rests(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     return ax
 
 
-def _torques_over(ds: xr.Dataset, places: Floats, ax: Axes | None) -> Axes:
+def _torques_over(ds: xr.Dataset, positions: Floats, ax: Axes | None) -> Axes:
     """Draw both torques over some places, and the drive's own."""
     from gearidae.drawing.style import line_colour, line_style, line_width, mark_value, new_axes, tidy
 
@@ -368,7 +368,7 @@ def _torques_over(ds: xr.Dataset, places: Floats, ax: Axes | None) -> Axes:
         if held.any():
             drawn = True
             ax.plot(
-                places[held],
+                positions[held],
                 torque[held],
                 color=line_colour(number),
                 linestyle=line_style(number),

@@ -439,8 +439,8 @@ def _spread(point: xr.Dataset) -> str:
 def _gears_rows(ds: xr.Dataset) -> Rows:
     """Mean limit for each number of exits, and the limit of each gear for the largest."""
     yield f"Sticking limit of {_key(ds)}, mean of the gears", "", ""
-    for place in range(ds.sizes["exits"]):
-        point = ds.isel(exits=place)
+    for index in range(ds.sizes["exits"]):
+        point = ds.isel(exits=index)
         exits, count = int(point["exits"]), int(point["stuck"])
         waited = f"within {exits} mesh exit{'s' if exits > 1 else ''}"
         if not count:
@@ -504,7 +504,7 @@ def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     exits = ds["exits"].values
     together = xr.concat([ds[name].drop_attrs() for name in ("passes", "limit", "sticks")], "end")
     along = parameter_axis(together.rename(_key(ds).rpartition(".")[2]).assign_attrs(ds["limit"].attrs))
-    passes, limit, sticks = along.places
+    passes, limit, sticks = along.positions
     ax.plot(exits, passes, "^", color=POSITIVE, markersize=5, label="passes")
     ax.plot(exits, limit, color="0.3", linewidth=line_width(1.2), label="limit")
     ax.plot(exits, sticks, "X", color=NEGATIVE, markersize=5, label="sticks")
@@ -550,7 +550,7 @@ def picture_of_gears(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     exits = ds["exits"].values
     together = xr.concat([*(ds["limit"].drop_attrs().drop_vars("seed")), ds["mean"].drop_attrs()], "line")
     along = parameter_axis(together.rename(_key(ds).rpartition(".")[2]).assign_attrs(ds["limit"].attrs))
-    *gears, mean = along.places
+    *gears, mean = along.positions
     lines = ax.plot(exits, np.transpose(gears), color="0.7", marker=".", linewidth=line_width(0.7))
     lines[0].set_label(gears_text(len(gears)))
     colour = line_colour(0)

@@ -95,8 +95,8 @@ def _rows(ds: xr.Dataset) -> Rows:
         if str(point["status"].values) != "finished":
             yield "no answer", "-", str(point["message"].values)
             continue
-        for place, name in enumerate(point["joint"].values.tolist()):
-            joint = point.isel(joint=place)
+        for index, name in enumerate(point["joint"].values.tolist()):
+            joint = point.isel(joint=index)
             more = f"{float(joint['hours']):.3g} h, {float(joint['sliding']):.4g} N m"
             if drawn:
                 low, _, high = joint["turns_quantile"].values

@@ -233,8 +233,8 @@ def _dataset(
         )
     none = Slid((math.nan,) * len(SUMS), math.nan, math.nan)
     slides = [none if failure else Slid.read(word) for failure, word in zip(failures, words, strict=True)]
-    places = [list(SUMS).index(name) for name in wear.names]
-    sliding = np.array([slid.sliding for slid in slides])[:, places]
+    indices = [list(SUMS).index(name) for name in wear.names]
+    sliding = np.array([slid.sliding for slid in slides])[:, indices]
     rates = np.array([slid.rate for slid in slides])
     asked = np.array(rates if requested is None else requested)
     values = {

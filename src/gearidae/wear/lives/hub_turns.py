@@ -159,13 +159,13 @@ def _gained(
 ) -> tuple[Floats, float, float]:
     """What a block has slid [N m], the time it took [s], and turns of the pinion."""
     assert after.checkpoint is not None
-    assert start.place is not None
+    assert start.position is not None
     end = engine.end_of(block, after.checkpoint, start.time)
-    assert end.place is not None
+    assert end.position is not None
     assert after.balance is not None
     assert before.balance is not None
     slid = np.array([after.balance[name] - before.balance[name] for name in SUMS.values()])
-    return slid, end.time - start.time, abs(end.place - start.place) / block.gears.pinion_teeth
+    return slid, end.time - start.time, abs(end.position - start.position) / block.gears.pinion_teeth
 
 
 def _drift(blocks: list[Floats]) -> float:

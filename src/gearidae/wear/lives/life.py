@@ -1,9 +1,9 @@
 """Life of a coating: coverage against passages, by cycle jump from windows at a frozen coverage.
 
 A window is some mesh cycles at a coverage that does not change; what its flanks are exposed to
-(`gearidae.engine.observers.exposures.follow`) gives, by a loss law, the rate at which coverage is lost. The rates are
-integrated over passages (`gearidae.wear.lives.cycle_jump`) until the gear sticks in a window, a coverage or a number of
-passages is reached. Passages in which the coverage changes too fast for that are simulated cycle by cycle
+(`gearidae.engine.observers.exposures.accumulation`) gives, by a loss law, the rate at which coverage is lost. The rates
+are integrated over passages (`gearidae.wear.lives.cycle_jump`) until the gear sticks in a window, a coverage or a
+number of passages is reached. Passages in which the coverage changes too fast for that are simulated cycle by cycle
 (`gearidae.wear.lives.rates`).
 """
 

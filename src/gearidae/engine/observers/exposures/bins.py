@@ -30,11 +30,11 @@ def bin_at(m: Model, inside: float) -> int:
 
 
 @compiled
-def row_of(m: Model, coast: int, pair: int) -> int:
+def row_of(m: Model, flank: int, pair: int) -> int:
     """Where the exposures of the pinion's tooth of a pair begin among the rows."""
     teeth = int(m.scene.pinion_teeth)
-    tooth = (pair + int(m.state.turns)) % teeth
-    return m.scene.exposures_at + (coast * teeth + tooth) * m.scene.exposure_rows * m.scene.bins
+    tooth = (pair + int(m.state.whole_pitches)) % teeth
+    return m.scene.exposures_at + (flank * teeth + tooth) * m.scene.exposure_rows * m.scene.bins
 
 
 @compiled(inline=True)
@@ -45,7 +45,7 @@ def share_at_edge(m: Model, here: int, start: float, end: float) -> float:
 
 
 @compiled(inline=True)
-def way_to_edge(m: Model, k: int, inside: float, turn: float) -> float:
+def way_to_edge(m: Model, k: int, inside: float, phase_speed: float) -> float:
     """Way to the end of the bin that a pair is in, in bins; infinite where the path of contact ends there.
 
     Parameters
@@ -54,11 +54,11 @@ def way_to_edge(m: Model, k: int, inside: float, turn: float) -> float:
         Index of the pair's history, whose pressure has been looked at there.
     inside : float
         Position on the path of contact, in pitches.
-    turn : float
+    phase_speed : float
         Direction in which the phase goes, by its sign.
     """
     edge = m.work.exposing.pair[k].seen_bin
-    if (turn > 0.0) == (k < m.scene.slots):
+    if (phase_speed > 0.0) == (k < m.scene.slots):
         edge += 1
     if edge == 0 or edge == m.scene.bins:
         return math.inf

@@ -20,7 +20,7 @@ from gearidae.engine.laws.pairs import asperities_in_contact
 from gearidae.engine.model.state import MATERIALS, Floats, Model
 from gearidae.engine.observers.exposures.bins import ROWS, bin_at, row_of, share_at_edge
 from gearidae.engine.pairs.tooth_pairs import contact_length, list_known
-from gearidae.engine.population.contact_point import pair_of, place_of_arc, spot_at
+from gearidae.engine.population.contact_point import pair_of, position_of_arc, spot_at
 from gearidae.engine.population.layout import ARC, HEIGHT, K_MATERIAL, KIND, REMEMBERED, SIGN, column
 from gearidae.formulas.interpolation import cubic
 
@@ -28,7 +28,7 @@ from gearidae.formulas.interpolation import cubic
 @compiled
 def adds_often(m: Model) -> bool:
     """Whether contacts are added up wherever sliding work is, as the lag of each material is not known."""
-    often = m.scene.nodes > 0 or m.scene.by_place != 0
+    often = m.scene.nodes > 0 or m.scene.covered_by_position != 0
     for material in range(MATERIALS):
         surface = m.scene.material[material]
         often |= surface.force_scale > 0.0 and surface.stretch_limit == 0.0
@@ -124,7 +124,7 @@ def _note_numbers(m: Model, y: Floats, k: int, gap: float) -> float:
             lost += (
                 law.joining_energy * law.force_scale * (exposure.number[material] - exposure.base[material])
             )
-    return h.lag / lost if lost > 0.0 else 0.0
+    return h.adhesion_lag / lost if lost > 0.0 else 0.0
 
 
 @compiled
@@ -218,15 +218,15 @@ def _note_crossings(m: Model, t: float, k: int, inside: float, force: tuple[floa
         As for `see_pressure`.
     """
     exposure, here = m.work.exposing.pair[k], bin_at(m, inside)
-    for place in range(min(exposure.seen_bin, here) + 1, max(exposure.seen_bin, here) + 1):
-        edge = place / m.scene.bins_per_pitch
+    for number in range(min(exposure.seen_bin, here) + 1, max(exposure.seen_bin, here) + 1):
+        edge = number / m.scene.bins_per_pitch
         share = (edge - exposure.seen_position) / (inside - exposure.seen_position)
         pressing = cubic(
             share, t - exposure.seen_time, exposure.force, exposure.force_rate, force[0], force[1]
         )
         if pressing > 0.0:
-            note_pressure(m, k, place - 1, edge, pressing)
-            note_pressure(m, k, place, edge, pressing)
+            note_pressure(m, k, number - 1, edge, pressing)
+            note_pressure(m, k, number, edge, pressing)
 
 
 @compiled_once(EXPOSURES)
@@ -235,15 +235,17 @@ def add_asperity_switches(m: Model, y: Floats) -> None:
     for i in range(list_known(m, y)):
         k = m.work.known[i]
         contact, now = m.work.contact[k], pair_of(m, k, y)
-        row = row_of(m, now.coast, now.number)
-        at = spot_at(m, now.place, now.moves)
-        bend = 0.5 * m.scene.population.steepness / at.radius
+        row = row_of(m, now.flank, now.number)
+        at = spot_at(m, now.position, now.moves)
+        half_curvature = 0.5 * m.scene.population.steepness / at.radius
         for n in range(contact.asperity_switches):
             j = int(m.rows[column(m, k, REMEMBERED) + n])
             arc, kind = m.rows[column(m, k, ARC) + j], int(m.rows[column(m, k, KIND) + j])
             x = arc - at.arc
-            energy = candidate_energy(m, kind, m.rows[column(m, k, HEIGHT) + j] - now.gap - bend * x * x)
-            here = row + bin_at(m, place_of_arc(m, arc))
+            energy = candidate_energy(
+                m, kind, m.rows[column(m, k, HEIGHT) + j] - now.gap - half_curvature * x * x
+            )
+            here = row + bin_at(m, position_of_arc(m, arc))
             material = int(m.tables[kind + K_MATERIAL])
             lost = here + (ROWS.adhesion + material) * m.scene.bins
             if m.rows[column(m, k, SIGN) + j] > 0.0:

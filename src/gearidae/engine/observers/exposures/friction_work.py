@@ -17,7 +17,7 @@ from gearidae.engine.model.state import PHASE, Floats, Model
 from gearidae.engine.observers.exposures.bins import ROWS, bin_at, row_of
 from gearidae.engine.pairs.coverage import path_position
 from gearidae.engine.pairs.tooth_pairs import flank_of_history
-from gearidae.engine.population.contact_point import pair_now, place_of_arc, spot_at
+from gearidae.engine.population.contact_point import pair_now, position_of_arc, spot_at
 from gearidae.engine.population.layout import ARC, HEIGHT, JOINED, KIND, column
 
 
@@ -62,37 +62,37 @@ def divide_friction_work(m: Model, y: Floats) -> None:
         m.state.history[k].impact.friction_loss += work
         if m.scene.bins == 0:
             continue
-        coast = flank_of_history(m, k)
-        row = row_of(m, coast, pair) + ROWS.friction * m.scene.bins
+        flank = flank_of_history(m, k)
+        row = row_of(m, flank, pair) + ROWS.friction * m.scene.bins
         if m.work.contact[k].joined > 0 and _divide_asperities(m, y, k, pair, row, work):
             continue
-        m.rows[row + bin_at(m, path_position(m, coast, pair, y[PHASE]))] += work
+        m.rows[row + bin_at(m, path_position(m, flank, pair, y[PHASE]))] += work
 
 
 @compiled
 def _divide_asperities(m: Model, y: Floats, k: int, pair: int, row: int, work: float) -> bool:
     """Add the work of a population's pair to the places of its asperities; whether one of them has a limit."""
     now = pair_now(m, flank_of_history(m, k), pair, y)
-    at, total = spot_at(m, now.place, now.moves), 0.0
+    at, total = spot_at(m, now.position, now.moves), 0.0
     joined, arcs, heights, kinds = (
         column(m, k, JOINED),
         column(m, k, ARC),
         column(m, k, HEIGHT),
         column(m, k, KIND),
     )
-    bend = 0.5 * m.scene.population.steepness / at.radius
+    half_curvature = 0.5 * m.scene.population.steepness / at.radius
     for adds in range(2):  # their sum first
         share = work / total if adds == 1 else 1.0
         for i in range(m.work.contact[k].joined):
             j = int(m.rows[joined + i])
             x, kind = m.rows[arcs + j] - at.arc, int(m.rows[kinds + j])
-            overlap = m.rows[heights + j] - now.gap - bend * x * x
+            overlap = m.rows[heights + j] - now.gap - half_curvature * x * x
             load, stiffness = candidate_load(m, kind, overlap)
             limit = max(candidate_limit(m, kind, overlap, load, stiffness)[0], 0.0)
             if adds == 0:
                 total += limit
             else:
-                m.rows[row + bin_at(m, place_of_arc(m, m.rows[arcs + j]))] += share * limit
+                m.rows[row + bin_at(m, position_of_arc(m, m.rows[arcs + j]))] += share * limit
         if total == 0.0:
             return False
     return True

@@ -43,10 +43,10 @@ PER_PITCH = 100.0
 def sliding_speeds(m: Model, y: Floats, v_rate: float, w_rate: float) -> tuple[float, float, float]:
     """Sliding speed a pitch from the pitch point, its rate, and how fast a contact moves along the path."""
     s = m.scene
-    turn, e = pinion_speed(m, y)
-    turn_rate = pinion_acceleration(e, turn, y[W], v_rate, w_rate)
-    speed = s.sliding_pinion * turn + s.sliding_gear * y[W]
-    return speed, s.sliding_pinion * turn_rate + s.sliding_gear * w_rate, s.phase_rate * y[W]
+    surface_speed, e = pinion_speed(m, y)
+    surface_acceleration = pinion_acceleration(e, surface_speed, y[W], v_rate, w_rate)
+    speed = s.sliding_pinion * surface_speed + s.sliding_gear * y[W]
+    return speed, s.sliding_pinion * surface_acceleration + s.sliding_gear * w_rate, s.phase_rate * y[W]
 
 
 @compiled(inline=True)
@@ -271,7 +271,7 @@ def next_interval(m: Model, to_zero: float, speed: float) -> None:
 
 
 @compiled(inline=True)
-def next_look(m: Model, way: float, speed: float) -> None:
+def choose_pressure_step(m: Model, way: float, speed: float) -> None:
     """Choose the step after which pressures are looked at next.
 
     Parameters

@@ -42,11 +42,11 @@ def force_of_motion(m: Model, t: float, y: Floats, yp: Floats, known: float) -> 
     follow_orbit(m, t)
     if in_flight(m):
         return mesh_force(m, y[V], 0.0)
-    if m.scene.friction.rubs != 0:
+    if m.scene.friction.any_friction != 0:
         return float(force_of_law(m, t, y)) if math.isnan(known) else known
-    turn, e = speed_and_error(m, y)
-    drive = pinion_force(m, t, torque_angle(m, DRIVE, y[U], y[PHASE]), turn)
-    acceleration = pinion_acceleration(e, turn, y[W], yp[V], yp[W])
+    surface_speed, e = speed_and_error(m, y)
+    drive = pinion_force(m, t, torque_angle(m, DRIVE, y[U], y[PHASE]), surface_speed)
+    acceleration = pinion_acceleration(e, surface_speed, y[W], yp[V], yp[W])
     return (drive - acceleration / m.scene.pinion_inverse_mass) / (1.0 - e.pinion)
 
 
@@ -88,14 +88,14 @@ def follow_force(m: Model, before: Record, last: Record, now: Record, between: t
     # times a b (a + b), the slopes at both ends of the parabola through the three forces
     a, b = last.time - before.time, now.time - last.time
     rise, next_rise = b * (last.force - before.force), a * (now.force - last.force)
-    bend = next_rise - rise
-    if (rise * (a + b) - bend * a) * (next_rise * (a + b) + bend * b) < 0.0:
-        _look_between(m, before, last, now, between)
+    curvature = next_rise - rise
+    if (rise * (a + b) - curvature * a) * (next_rise * (a + b) + curvature * b) < 0.0:
+        _search_between(m, before, last, now, between)
         follow_orbit(m, now.time)
 
 
 @compiled
-def _look_between(
+def _search_between(
     m: Model, before: Record, last: Record, now: Record, between: tuple[Floats, Floats]
 ) -> None:
     """Look for a record of the force near the vertex of the parabola through three accepted ones.
@@ -103,14 +103,14 @@ def _look_between(
     Each force that is found takes the place of the outer point that is further away.
     """
     t0, f0, t1, f1, t2, f2 = before.time, before.force, last.time, last.force, now.time, now.force
-    t, force, bend = vertex(t0, f0, t1, f1, t2, f2)
+    t, force, curvature = vertex(t0, f0, t1, f1, t2, f2)
     e = m.state.extremes
-    record = e.largest_force if bend < 0.0 else e.smallest_force
-    by_law = (force - record) * bend <= NEAR_RECORD * abs(record * bend)
+    record = e.largest_force if curvature < 0.0 else e.smallest_force
+    by_law = (force - record) * curvature <= NEAR_RECORD * abs(record * curvature)
     if not by_law:
         largest, smallest = _records(m)
         # the parabola is out by less than what it adds to the accepted forces
-        farthest = 2.0 * force - (max(f0, f1, f2) if bend < 0.0 else min(f0, f1, f2))
+        farthest = 2.0 * force - (max(f0, f1, f2) if curvature < 0.0 else min(f0, f1, f2))
         if smallest <= farthest <= largest:
             return
         by_law = m.work.adams.order_used < 2
@@ -143,10 +143,15 @@ def _force_between(m: Model, before: Record, last: Record, now: Record, t: float
     p, q = (before, last) if t < last.time else (last, now)
     h = q.time - p.time
     s = (t - p.time) / h
-    y[U] = quintic(s, h, (p.travel, p.travel_rate, p.travel_bend), (q.travel, q.travel_rate, q.travel_bend))
-    y[V] = cubic(s, h, p.travel_rate, p.travel_bend, q.travel_rate, q.travel_bend)
+    y[U] = quintic(
+        s,
+        h,
+        (p.travel, p.travel_rate, p.travel_acceleration),
+        (q.travel, q.travel_rate, q.travel_acceleration),
+    )
+    y[V] = cubic(s, h, p.travel_rate, p.travel_acceleration, q.travel_rate, q.travel_acceleration)
     scale = m.scene.phase_rate
-    y[PHASE] = cubic(s, h, p.position, scale * p.speed, q.position, scale * q.speed) - m.state.turns
+    y[PHASE] = cubic(s, h, p.position, scale * p.speed, q.position, scale * q.speed) - m.state.whole_pitches
     y[W] = cubic(s, h, p.speed, p.speed_rate, q.speed, q.speed_rate)
     return float(force_of_law(m, t, y))
 

@@ -70,13 +70,13 @@ def follow_speed(m: Model, last: Record, now: Record, y: Floats) -> None:
         _begin_parts(m, last, now)
     turned = now.speed_rate * last.speed_rate <= 0.0 and now.speed_rate != last.speed_rate
     if turned or (now.speed <= 0.0 < last.speed):
-        _look_inside(m, last, now, y, turned)
+        _search_inside(m, last, now, y, turned)
     if m.state.extremes.is_stuck != 0 and now.position - m.state.extremes.stuck_position > HELD_WITHIN:
         m.state.extremes.is_stuck = 0  # it has turned on
 
 
 @compiled
-def _look_inside(m: Model, last: Record, now: Record, y: Floats, turned: bool) -> None:
+def _search_inside(m: Model, last: Record, now: Record, y: Floats, turned: bool) -> None:
     """Locate an extremum of the speed within a step, and where it falls to zero."""
     h, extreme = now.time - last.time, now.speed
     if turned:
@@ -145,7 +145,7 @@ def _begin_parts(m: Model, last: Record, now: Record) -> None:
         e.windows += 1
         window.lowest = window.highest = w
         window.fall = window.rise = 0.0
-        window.position = _place_within(m, last, now, share)
+        window.position = _position_within(m, last, now, share)
     for i in range(len(RUN_PARTS)):
         time = _begin_of(m, i)
         if e.part[i].begun != 0 and period > 0.0:
@@ -153,7 +153,7 @@ def _begin_parts(m: Model, last: Record, now: Record) -> None:
             if passed > 0.0:
                 e.part[i].whole_time += passed * period
                 share = min(max((e.part[i].whole_time - last.time) / h, 0.0), 1.0) if h > 0.0 else 1.0
-                e.part[i].whole_position = _place_within(m, last, now, share)
+                e.part[i].whole_position = _position_within(m, last, now, share)
         if e.part[i].begun != 0 or now.time < time:
             continue
         share = (time - last.time) / h if h > 0.0 else 1.0
@@ -161,7 +161,7 @@ def _begin_parts(m: Model, last: Record, now: Record) -> None:
         w = cubic(share, h, last.speed, last.speed_rate, now.speed, now.speed_rate)
         note_speed(m, w)
         e.part[i].begun, e.part[i].time = 1, time
-        e.part[i].position = _place_within(m, last, now, share)
+        e.part[i].position = _position_within(m, last, now, share)
         e.part[i].whole_time, e.part[i].whole_position = time, e.part[i].position
         e.part[i].lowest = e.part[i].highest = w
         if i == 0:
@@ -170,7 +170,7 @@ def _begin_parts(m: Model, last: Record, now: Record) -> None:
 
 
 @compiled
-def _place_within(m: Model, last: Record, now: Record, share: float) -> float:
+def _position_within(m: Model, last: Record, now: Record, share: float) -> float:
     """How far the gear had turned after a share of a step."""
     scale = m.scene.phase_rate
     return cubic(

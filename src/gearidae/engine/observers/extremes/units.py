@@ -36,7 +36,7 @@ def extremes_in_si(m: Model, judge: Judge, time: float, y: Floats) -> Extremes:
     if s.kind == ROLLER:
         return Extremes(numbers, final_speed=float(-y[V] * s.length_unit / s.time_unit))
     numbers |= in_si(SPEED_EXTREMES, m.state.extremes, s)
-    speeds = _speeds(e, float(s.phase_rate), time, float(y[PHASE] + m.state.turns))
+    speeds = _speeds(e, float(s.phase_rate), time, float(y[PHASE] + m.state.whole_pitches))
     numbers |= in_si(SPEEDS_NOW, speeds | {"final_speed": float(y[W])}, s)
     numbers |= in_si(STANDING_NOW, standing := standing_now(m, judge, time, y), s)
     if not e.part[0]["begun"]:

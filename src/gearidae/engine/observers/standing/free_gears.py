@@ -59,7 +59,7 @@ class Zero(NamedTuple):
 
     time: float
     position: float
-    lead: float
+    pinion_lead: float
     exits: int
     lowest: float
     highest: float
@@ -122,8 +122,8 @@ class FreeGears:
         Where torques begin another piece, over tau, in order; the last is the end of the run.
     """
 
-    def __init__(self, m: Model, place: int, zero: Zero, knots: list[float]) -> None:
-        self._place, self._knots, self._zero = place, knots, zero
+    def __init__(self, m: Model, address: int, zero: Zero, knots: list[float]) -> None:
+        self._address, self._knots, self._zero = address, knots, zero
         self._unit, self._end = float(m.scene.time_unit), float(m.scene.end)
         self._torque = float(m.scene.force_unit * m.scene.gear_radius)
         self._dry, step = bool(m.scene.dry), float(m.scene.free_step)
@@ -168,7 +168,7 @@ class FreeGears:
     def driven(self, time: float) -> tuple[float, float]:
         """By how much [N m] and how long [s] the drive has exceeded the dry load of a gear that stands."""
         t = min(time / self._unit, self._end)
-        at = self._zero.position, self._zero.lead
+        at = self._zero.position, self._zero.pinion_lead
         while (last := self._drives[-1])[0] < t:
             piece = self._piece(last[0])
             if piece[1] > t:
@@ -182,13 +182,15 @@ class FreeGears:
     def _add_drive(
         self, last: tuple[float, float, float], piece: tuple[float, float], to: float, at: tuple[float, float]
     ) -> tuple[float, float, float]:
-        largest, lasts = drive_between(self._place, piece, last[0], to, at)
+        largest, lasts = drive_between(self._address, piece, last[0], to, at)
         return to, max(last[1], largest * self._torque), last[2] + lasts * self._unit
 
     def drive_torque(self, time: float) -> float:
         """Torque of the drive on a pinion that stands with the gear, over its base radius, scaled."""
         t = min(time / self._unit, self._end)
-        return float(drive_at(self._place, self._piece(t), t, (self._zero.position, self._zero.lead)))
+        return float(
+            drive_at(self._address, self._piece(t), t, (self._zero.position, self._zero.pinion_lead))
+        )
 
     def bound(self, time: float) -> float:
         """Bound of how far they have been until a time [pb], at no more cost than of their torques at rest.
@@ -229,7 +231,7 @@ class FreeGears:
         piece = self._piece(t)
         sign = math.copysign(1.0, v)
         if v == 0.0:
-            time, push = rest_of(self._place, piece, t, (self._zero.position + x, self._zero.lead))
+            time, push = rest_of(self._address, piece, t, (self._zero.position + x, self._zero.pinion_lead))
             if push == 0.0 or time > t:
                 self._add([time], [x], [0.0])
                 return
@@ -240,11 +242,16 @@ class FreeGears:
 
     def _solve(self, piece: tuple[float, float], t: float, start: tuple[float, float], sign: float) -> None:
         """Solve their equation over a window in which they turn in one direction, or which ends as they stop."""
-        place, position, lead, (begin, end) = self._place, self._zero.position, self._zero.lead, piece
+        address, position, pinion_lead, (begin, end) = (
+            self._address,
+            self._zero.position,
+            self._zero.pinion_lead,
+            piece,
+        )
 
         def rates(s: float, y: Floats) -> tuple[float, float]:
             x, v = y.tolist()
-            return v, free_acceleration(place, begin, end, t + s, position + x, lead, v, sign)
+            return v, free_acceleration(address, begin, end, t + s, position + x, pinion_lead, v, sign)
 
         span = min(self._span, piece[1] - t)
         while True:
@@ -294,8 +301,8 @@ class FreeGears:
         for after, travel, speed in zip(times, travels, speeds, strict=True):
             farthest = max(farthest, abs(travel))
             if v * speed < 0.0 and after > t:
-                turn = turning_point(after - t, x, v, travel, speed)[1]
-                farthest = max(farthest, abs(turn))
+                farthest_travel = turning_point(after - t, x, v, travel, speed)[1]
+                farthest = max(farthest, abs(farthest_travel))
             if farthest > (1.0 + GROWS) * mark:
                 mark = farthest
                 self._marks.append((after, mark, after * self._unit))

@@ -14,15 +14,15 @@ import numpy as np
 
 from gearidae.engine.model.checkpoint_record import HIGH, MOST_STANDSTILLS
 from gearidae.engine.model.state import PHASE, STOPS, Floats, Model, W
-from gearidae.engine.observers.standing.follow import NEAR
 from gearidae.engine.observers.standing.free_gears import FreeGears, FreeWay, Zero
 from gearidae.engine.observers.standing.torques import hardest_in, slowest_period_at
+from gearidae.engine.observers.standing.tracking import NEAR
 from gearidae.laws.shaft.schedule import segment_ends
 from gearidae.records.standing import (
     GROWS,
     NOTICED,
     SETTLED_WITHIN,
-    SHARE,
+    SHORT_STANDSTILL,
     Followed,
     stands,
     turns_round,
@@ -160,8 +160,8 @@ class Judge:
         Of the model, from `gearidae.engine.model.addresses.Addresses`.
     """
 
-    def __init__(self, m: Model, place: int) -> None:
-        self._m, self._place = m, place
+    def __init__(self, m: Model, address: int) -> None:
+        self._m, self._address = m, address
         self._unit, self._near = float(m.scene.time_unit), NEAR * float(m.scene.phase_rate)
         self._free: dict[Zero, FreeGears] = {}  # of the zeros that are known now
         self._known_knots: list[float] | None = None
@@ -201,7 +201,7 @@ class Judge:
         y : ndarray, shape (n,)
             Scaled state there.
         """
-        m, t, position = self._m, time * self._unit, float(y[PHASE] + self._m.state.turns)
+        m, t, position = self._m, time * self._unit, float(y[PHASE] + self._m.state.whole_pitches)
         seen, stood, s = Seen(m.state.standing), Stood(m.state.stood), m.state.standing
         zeros, row, since, exits = seen.zeros, _NOWHERE, math.nan, 0
         from_here = self._standing_since(zeros, t, position, t, 0.0)
@@ -223,7 +223,7 @@ class Judge:
             gone = max(-self._free_until(high, t).travel, 0.0)
             back = high.position - position, gone, high.time, high.exits, float(s.turn_time)
         self._forget()
-        period = float(slowest_period_at(self._place)) * self._unit
+        period = float(slowest_period_at(self._address)) * self._unit
         return Said(stood, from_here is not None, row, since, exits, back, period)
 
     def settle(self, time: float, y: Floats) -> None:
@@ -238,7 +238,7 @@ class Judge:
             As for `now`.
         """
         self.follow(time)
-        m, t, position = self._m, time * self._unit, float(y[PHASE] + self._m.state.turns)
+        m, t, position = self._m, time * self._unit, float(y[PHASE] + self._m.state.whole_pitches)
         seen, stood, s = Seen(m.state.standing), Stood(m.state.stood), m.state.standing
         if self._standing_since(seen.zeros, t, position, t, 0.0) is None:
             self._note(stood, seen, t, position, t)
@@ -276,22 +276,25 @@ class Judge:
         zeros = seen.zeros
         if not zeros:
             return
-        limit, place = self._break_away(seen, t, position)
-        if limit - zeros[0].time <= SHARE * length and self._gears(zeros[0]).bound(limit) < NOTICED:
+        limit, stood_at = self._break_away(seen, t, position)
+        if (
+            limit - zeros[0].time <= SHORT_STANDSTILL * length
+            and self._gears(zeros[0]).bound(limit) < NOTICED
+        ):
             return  # too short for any of them
         s = seen.record
         held = self._near if self._slipped(seen) and s.slip_from_rest != 0 else 0.0
-        since = self._standing_since(zeros, limit, place, length, held)
+        since = self._standing_since(zeros, limit, stood_at, length, held)
         if since is not None:
             if not stood.has(since):
                 free = self._free_until(since, limit)
-                settled = self._settles(since, free, limit, place)
-                self._add(stood, seen, since, limit, (distance(since, place), free.farthest), settled)
+                settled = self._settles(since, free, limit, stood_at)
+                self._add(stood, seen, since, limit, (distance(since, stood_at), free.farthest), settled)
             return
         for z in zeros:
             if not stood.has(z) and z.time < limit:
                 time, way, farthest = self._stood_until(seen, z, limit, length)
-                if time > 0.0 and not self._swings(zeros, z, farthest, time, place):
+                if time > 0.0 and not self._swings(zeros, z, farthest, time, stood_at):
                     self._add(stood, seen, z, time, (way, farthest), 0, begun=farthest > 0.0)
                     return
 
@@ -321,8 +324,8 @@ class Judge:
     def _slipped(self, seen: Seen) -> bool:
         """Whether dry friction has let go of the gear since its last zero, near where it stood."""
         s = seen.record
-        near = abs(s.slip_position - s.place) <= self._near
-        return bool(near and s.slip_time >= s.place_time and s.slip_time > 0.0)
+        near = abs(s.slip_position - s.zero_position) <= self._near
+        return bool(near and s.slip_time >= s.zero_time and s.slip_time > 0.0)
 
     def _break_away(self, seen: Seen, t: float, position: float) -> tuple[float, float]:
         """When [s] and where the gear broke away that leaves half a pitch now.
@@ -350,7 +353,7 @@ class Judge:
             if z.time > time:
                 break
             lasts = time - z.time
-            if lasts <= SHARE * length and self._gears(z).bound(time) < NOTICED:
+            if lasts <= SHORT_STANDSTILL * length and self._gears(z).bound(time) < NOTICED:
                 continue
             free, way = self._free_until(z, time), distance(z, position)
             kept = way <= held or self._settles(z, free, time, position) == 2
@@ -396,7 +399,7 @@ class Judge:
         if end > 0.0:
             return end, advance, self._free_until(z, end).farthest
         onset = self._free_until(z, limit).onset
-        if onset > 0.0 and onset - z.time > SHARE * length:
+        if onset > 0.0 and onset - z.time > SHORT_STANDSTILL * length:
             return onset, distance(z, z.position), 0.0
         return 0.0, 0.0, 0.0
 
@@ -420,7 +423,7 @@ class Judge:
         """Free gears of a zero; which it is does not change with where the gear has been since."""
         key = z._replace(lowest=0.0, highest=0.0, mark=0.0, grown=0.0, driven=0)
         if key not in self._free:
-            self._free[key] = FreeGears(self._m, self._place, z, self.knots())
+            self._free[key] = FreeGears(self._m, self._address, z, self.knots())
         return self._free[key]
 
     def _forget(self) -> None:
@@ -462,7 +465,7 @@ class Judge:
         if end == math.inf:
             return
         hardest = self._hardest(z, max(begin, float(m.scene.start)))
-        end = max(end, begin + float(slowest_period_at(self._place)), hardest)
+        end = max(end, begin + float(slowest_period_at(self._address)), hardest)
         # behind the present time, so that it is a root
         track.stop_time = max(end, t + 1e-9 * float(m.scene.end - m.scene.start))
 
@@ -474,7 +477,7 @@ class Judge:
             if end <= t:
                 continue
             first = max(begin, t)
-            at, size = hardest_in(self._place, (begin, end), first, end, (z.position, z.lead))
+            at, size = hardest_in(self._address, (begin, end), first, end, (z.position, z.pinion_lead))
             if size > most + 1e-9 * abs(most) or most == -math.inf:
                 time, most = at, size
         return time

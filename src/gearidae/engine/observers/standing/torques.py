@@ -22,12 +22,12 @@ _PARTS: Final = 32
 
 
 @compiled
-def _angle(m: Model, shaft: int, position: float, lead: float) -> float:
+def _angle(m: Model, shaft: int, position: float, pinion_lead: float) -> float:
     """Angle of a shaft [rad] of a gear at a position [pb] whose pinion leads [sigma]."""
     if m.scene.torque[shaft].takes_angle == 0:
         return 0.0
-    way = (position - m.state.first_place) / m.scene.phase_rate
-    return (way + (lead if shaft != LOAD else 0.0)) * m.scene.torque[shaft].angle_unit
+    way = (position - m.state.first_position) / m.scene.phase_rate
+    return (way + (pinion_lead if shaft != LOAD else 0.0)) * m.scene.torque[shaft].angle_unit
 
 
 @compiled
@@ -39,27 +39,27 @@ def dry_load(m: Model, t: float, position: float) -> float:
 
 
 @compiled
-def _acting(m: Model, t: float, position: float, lead: float, speed: float) -> float:
+def _acting(m: Model, t: float, position: float, pinion_lead: float, speed: float) -> float:
     """What acts on both shafts besides the driving torque and the dry resistance, scaled."""
     m.work.elsewhere = 1  # laws have no memory of these shafts
-    force = acting(m, LOAD, t, _angle(m, LOAD, position, lead), speed, -0.0)
+    force = acting(m, LOAD, t, _angle(m, LOAD, position, pinion_lead), speed, -0.0)
     if m.scene.torque[DRIVE].acts != 0:
-        force = acting(m, DRIVE, t, _angle(m, DRIVE, position, lead), speed, force)
+        force = acting(m, DRIVE, t, _angle(m, DRIVE, position, pinion_lead), speed, force)
     m.work.elsewhere = 0
     return float(force)
 
 
 @compiled_once(SOLVER)
-def push(m: Model, t: float, position: float, lead: float, speed: float) -> float:
+def push(m: Model, t: float, position: float, pinion_lead: float, speed: float) -> float:
     """What drives gears that turn as one against the dry resistance, scaled."""
-    drive = driving_force(m, DRIVE, t, _angle(m, DRIVE, position, lead), speed)
-    return float(drive + _acting(m, t, position, lead, speed))
+    drive = driving_force(m, DRIVE, t, _angle(m, DRIVE, position, pinion_lead), speed)
+    return float(drive + _acting(m, t, position, pinion_lead, speed))
 
 
 @compiled
-def excess(m: Model, t: float, position: float, lead: float) -> float:
+def excess(m: Model, t: float, position: float, pinion_lead: float) -> float:
     """Size of what drives a gear at rest, less the dry resistance, scaled."""
-    return abs(push(m, t, position, lead, 0.0)) - dry_load(m, t, position)
+    return abs(push(m, t, position, pinion_lead, 0.0)) - dry_load(m, t, position)
 
 
 @compiled
@@ -76,9 +76,9 @@ def slowest_period(m: Model) -> float:
 
 
 @compiled
-def slowest_period_at(place: int) -> float:
+def slowest_period_at(address: int) -> float:
     """`slowest_period`, for Python."""
-    return slowest_period(model_at(place))
+    return slowest_period(model_at(address))
 
 
 # -- at another time than that of the run ----------------------------------------------------------------------------
@@ -113,44 +113,53 @@ def _go_back(m: Model, kept: tuple[int, int, int, float, float]) -> None:
 
 @compiled
 def free_acceleration(
-    place: int, begin: float, end: float, t: float, position: float, lead: float, speed: float, sign: float
+    address: int,
+    begin: float,
+    end: float,
+    t: float,
+    position: float,
+    pinion_lead: float,
+    speed: float,
+    sign: float,
 ) -> float:
     """Acceleration [pb/tau^2] of free gears that turn in a direction.
 
     Parameters
     ----------
-    place : int
+    address : int
         Of the model, from `gearidae.engine.model.addresses.Addresses`.
     begin, end : float
         Knots between which the time lies, over tau.
     t : float
         Over tau.
-    position, lead : float
+    position, pinion_lead : float
         Of the gear [pb], and of the pinion [sigma].
     speed : float
         [pb/tau].
     sign : float
         Of the direction.
     """
-    m = model_at(place)
+    m = model_at(address)
     kept = _enter_piece(m, begin, end)
     rate = m.scene.phase_rate
-    force = push(m, t, position, lead, speed / rate) - sign * dry_load(m, t, position)
+    force = push(m, t, position, pinion_lead, speed / rate) - sign * dry_load(m, t, position)
     _go_back(m, kept)
     return rate * force / (1.0 / m.scene.pinion_inverse_mass + 1.0 / m.scene.gear_inverse_mass)
 
 
 @compiled
-def _rests(t: float, m: Model, position: float, lead: float) -> bool:
+def _rests(t: float, m: Model, position: float, pinion_lead: float) -> bool:
     """Whether the dry resistance holds a gear at rest."""
-    return bool(excess(m, t, position, lead) - NO_FORCE <= 0.0)
+    return bool(excess(m, t, position, pinion_lead) - NO_FORCE <= 0.0)
 
 
 _end_of_rest = bisected(_rests)
 
 
 @compiled
-def rest_of(place: int, piece: tuple[float, float], t: float, at: tuple[float, float]) -> tuple[float, float]:
+def rest_of(
+    address: int, piece: tuple[float, float], t: float, at: tuple[float, float]
+) -> tuple[float, float]:
     """Time from `t` on at which a drive overcomes the dry resistance of gears at rest, and what drives them then.
 
     At most that of the end of the piece, with 0.
@@ -164,7 +173,7 @@ def rest_of(place: int, piece: tuple[float, float], t: float, at: tuple[float, f
     at : tuple of two floats
         Position of the gear [pb] and lead of the pinion [sigma].
     """
-    m = model_at(place)
+    m = model_at(address)
     kept = _enter_piece(m, piece[0], piece[1])
     end, longest = piece[1], m.scene.free_step if m.scene.free_step > 0.0 else math.inf
     rests = _rests(t, m, at[0], at[1])
@@ -182,13 +191,13 @@ def rest_of(place: int, piece: tuple[float, float], t: float, at: tuple[float, f
 
 @compiled
 def drive_between(
-    place: int, piece: tuple[float, float], t: float, to: float, at: tuple[float, float]
+    address: int, piece: tuple[float, float], t: float, to: float, at: tuple[float, float]
 ) -> tuple[float, float]:
     """By how much, scaled, and how long, over tau, the drive exceeds the dry load of a gear that stands.
 
     Arguments as for `rest_of`.
     """
-    m = model_at(place)
+    m = model_at(address)
     kept = _enter_piece(m, piece[0], piece[1])
     largest, lasts, longest = 0.0, 0.0, (to - t) / _PARTS
     if m.scene.free_step > 0.0:
@@ -212,9 +221,9 @@ def drive_between(
 
 
 @compiled
-def drive_at(place: int, piece: tuple[float, float], t: float, at: tuple[float, float]) -> float:
+def drive_at(address: int, piece: tuple[float, float], t: float, at: tuple[float, float]) -> float:
     """Driving torque on a pinion at rest over its base radius, scaled; arguments as for `rest_of`."""
-    m = model_at(place)
+    m = model_at(address)
     kept = _enter_piece(m, piece[0], piece[1])
     force = driving_force(m, DRIVE, t, _angle(m, DRIVE, at[0], at[1]), 0.0)
     _go_back(m, kept)
@@ -232,10 +241,10 @@ def _bound_of_excess(m: Model, t: float, at: tuple[float, float]) -> float:
 
 @compiled
 def hardest_in(
-    place: int, piece: tuple[float, float], t: float, to: float, at: tuple[float, float]
+    address: int, piece: tuple[float, float], t: float, to: float, at: tuple[float, float]
 ) -> tuple[float, float]:
     """Time at which the drive exceeds the load most, and by how much at most then; arguments as for `rest_of`."""
-    m = model_at(place)
+    m = model_at(address)
     kept = _enter_piece(m, piece[0], piece[1])
     longest = math.inf
     if m.scene.free_step > 0.0:

@@ -9,7 +9,7 @@ from typing import Any
 from gearidae.engine.model.record_types import AT_REST, HELD_GEAR
 from gearidae.engine.model.state import Floats, Model
 from gearidae.engine.observers.standing.judge import Judge, Standstill
-from gearidae.records.standing import NOTICED, SHARE, Holding
+from gearidae.records.standing import NOTICED, SHORT_STANDSTILL, Holding
 
 
 def standing_now(m: Model, judge: Judge, time: float, y: Floats) -> dict[str, Any]:
@@ -77,7 +77,8 @@ def _counts(standstill: Standstill, until: float) -> bool:
     A share of the chain is what a standstill takes at least, and that has grown since the standstill was noted.
     """
     return bool(
-        standstill.free_advance >= NOTICED or standstill.end - standstill.since > SHARE * until * (1.0 - 1e-9)
+        standstill.free_advance >= NOTICED
+        or standstill.end - standstill.since > SHORT_STANDSTILL * until * (1.0 - 1e-9)
     )
 
 

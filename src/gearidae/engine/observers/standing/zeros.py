@@ -34,9 +34,9 @@ def make_zero(m: Model, i: int, t: float, position: float, y: Floats, at_start: 
     z = m.state.standing.zero[i]
     z.time = z.free_time = t
     z.position = z.lowest = z.highest = position
-    z.lead = 0.0
+    z.pinion_lead = 0.0
     if m.scene.torque[DRIVE].takes_angle != 0:
-        z.lead = y[U] - m.state.initial_lead + error_at(m, y[U], y[PHASE]).value
+        z.pinion_lead = y[U] - m.state.initial_pinion_lead + error_at(m, y[U], y[PHASE]).value
     z.exits = m.state.extremes.mesh_exits
     z.start = 1 if at_start else 0
     z.driven = 0
@@ -51,14 +51,14 @@ def add_zero(m: Model, t: float, position: float, y: Floats, at_start: bool) -> 
     """Note that the gear's speed is zero at a time over tau; `y` is a state near it."""
     s, time = m.state.standing, t * m.scene.time_unit
     note_slow(m, time, 0.0, position)
-    _note_turn(m, time, position, y)
-    s.place = s.near_position = position
-    s.place_time = s.near_time = time
+    _note_turning_point(m, time, position, y)
+    s.zero_position = s.near_position = position
+    s.zero_time = s.near_time = time
     s.near = 1
     for i in range(s.zero_count):
         z = s.zero[i]
         z.lowest, z.highest = min(z.lowest, position), max(z.highest, position)
-    look_at_distances(m, time, position)
+    note_distances(m, time, position)
     if s.zero_count == MOST_ZEROS:
         _drop(m, _most_alike(m))
     make_zero(m, s.zero_count, time, position, y, at_start)
@@ -72,7 +72,7 @@ def add_zero(m: Model, t: float, position: float, y: Floats, at_start: bool) -> 
 
 
 @compiled
-def look_at_distances(m: Model, time: float, position: float) -> None:
+def note_distances(m: Model, time: float, position: float) -> None:
     """Note how far the gear has been from each zero until a time [s], and when it looks again."""
     s = m.state.standing
     for i in range(s.zero_count):
@@ -81,7 +81,7 @@ def look_at_distances(m: Model, time: float, position: float) -> None:
         if way > (1.0 + GROWS) * z.mark:
             z.mark, z.grown = way, time
     if s.zero_count > 0:
-        s.look_time = time + _LOOKS * (time - s.zero[0].time)
+        s.distances_time = time + _LOOKS * (time - s.zero[0].time)
 
 
 @compiled_once(SOLVER)
@@ -91,14 +91,14 @@ def note_drive(m: Model, t: float) -> None:
     s.undriven = 0
     for i in range(s.zero_count):
         z = s.zero[i]
-        if z.driven == 0 and excess(m, t, z.position, z.lead) > NO_FORCE:
+        if z.driven == 0 and excess(m, t, z.position, z.pinion_lead) > NO_FORCE:
             z.driven = 1
         if z.driven == 0:
             s.undriven = 1
 
 
 @compiled
-def _note_turn(m: Model, time: float, position: float, y: Floats) -> None:
+def _note_turning_point(m: Model, time: float, position: float, y: Floats) -> None:
     """Note a zero farther forward or back than all since the gear last went that way."""
     s = m.state.standing
     if s.direction >= 0 and (s.high_known == 0 or position >= s.zero[HIGH].position):

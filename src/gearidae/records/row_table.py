@@ -73,7 +73,7 @@ class Rows:
     def of_table(cls, table: NDArray[np.float64]) -> Self:
         """Make rows of a table, shape (n, columns), as a driver writes it."""
         return cls(
-            *(table[:, place].astype(column.dtype) for place, column in enumerate(cls.columns.values()))
+            *(table[:, index].astype(column.dtype) for index, column in enumerate(cls.columns.values()))
         )
 
     @classmethod
@@ -96,7 +96,7 @@ FLAG: Final = np.int8
 """Type of flags."""
 
 
-def places(*columns: str) -> Any:
+def indices_of(*columns: str) -> Any:
     """Index of each column in a row, by its name."""
     make: Any = namedtuple  # mypy takes names that are written out only
     return make("Places", columns)(*range(len(columns)))

@@ -20,7 +20,7 @@ FINER: Final = 4
 """Steps from point to point in one from node to node."""
 
 GAP: Final = 0  # at the last accepted time
-SHARE: Final = 1  # how far the node's gap moves with the pair's
+GAP_SHARE: Final = 1  # how far the node's gap moves with the pair's
 PRESSURE: Final = 2  # of the last evaluation
 SLOPE: Final = 3  # slope of the loading branch in the node's gap
 DEFLECTION: Final = 4  # where nodes are eliminated: of the last evaluation, with its slope in the pair's gap,

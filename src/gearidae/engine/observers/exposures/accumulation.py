@@ -46,8 +46,8 @@ from gearidae.engine.observers.exposures.contacts import (
 from gearidae.engine.observers.exposures.sliding import (
     add_sliding,
     begin_intervals,
+    choose_pressure_step,
     next_interval,
-    next_look,
     sliding_speeds,
     start_with_one_step,
     time_to_zero,
@@ -118,7 +118,7 @@ def _follow(m: Model, t: float, y: Floats, yp: Floats, whole: bool) -> None:
     if ends:
         exposing.time = t
         next_interval(m, to_zero, sliding[2])
-    next_look(m, way, sliding[2])
+    choose_pressure_step(m, way, sliding[2])
 
 
 @compiled(inline=True)
@@ -148,25 +148,25 @@ def event(m: Model, t: float, y: Floats, yp: Floats, event: PairEvent) -> None:
     """
     if m.work.exposing.begun == 0:
         return
-    coast, pair, k, gap = event.coast, event.pair, event.k, event.gap
+    flank, pair, k, gap = event.flank, event.pair, event.k, event.gap
     if event.touches:
-        _touch(m, t, y, yp, coast, pair, k)
+        _touch(m, t, y, yp, flank, pair, k)
     if not event.turns:
         return
     exposure = m.work.exposing.pair[k]
     if m.state.history[k].direction < 0.0:
-        inside = path_position(m, coast, pair, y[PHASE])
+        inside = path_position(m, flank, pair, y[PHASE])
         if (
             gap < exposure.lowest
             or bin_at(m, inside) != exposure.seen_bin
             or m.scene.nodes > 0
             or joins(m, k, gap)
         ):
-            _close(m, t, y, yp, coast, pair, k, gap)
+            _close(m, t, y, yp, flank, pair, k, gap)
     elif m.work.exposing.often == 0:
         exposure.turned = 1
     else:
-        _open(m, y, coast, pair, k, gap)
+        _open(m, y, flank, pair, k, gap)
 
 
 @compiled
@@ -176,23 +176,23 @@ def finish(m: Model, t: float, y: Floats, yp: Floats) -> None:
 
 
 @compiled_once(EXPOSURES)
-def _open(m: Model, y: Floats, coast: int, pair: int, k: int, gap: float) -> None:
+def _open(m: Model, y: Floats, flank: int, pair: int, k: int, gap: float) -> None:
     """Note a contact that begins to close, whose contacts are added up often."""
-    _begin_new(m, k, pair, path_position(m, coast, pair, y[PHASE]))
+    _begin_new(m, k, pair, path_position(m, flank, pair, y[PHASE]))
     turn_to_closing(m, y, k, gap)
 
 
 @compiled_once(EXPOSURES)
-def _close(m: Model, t: float, y: Floats, yp: Floats, coast: int, pair: int, k: int, gap: float) -> None:
+def _close(m: Model, t: float, y: Floats, yp: Floats, flank: int, pair: int, k: int, gap: float) -> None:
     """Add what a contact that ceases to close has been exposed to: the pressure is largest where the gap is least."""
-    exposure, inside = m.work.exposing.pair[k], path_position(m, coast, pair, y[PHASE])
+    exposure, inside = m.work.exposing.pair[k], path_position(m, flank, pair, y[PHASE])
     _begin_new(m, k, pair, inside)
     if joins(m, k, gap):
         join(m, t, y, k, inside, (gap, 0.0))
     here, elastic = bin_at(m, inside), m.scene.nodes > 0
     if elastic or gap < exposure.lowest or here != exposure.seen_bin:
         exposure.lowest = min(exposure.lowest, gap)
-        force, _ = _force(m, t, y, (coast, pair, k), (gap, 0.0, inside))
+        force, _ = _force(m, t, y, (flank, pair, k), (gap, 0.0, inside))
         if elastic:  # the slope of the force has a jump here
             add_sliding(m, t, k, sliding_speeds(m, y, yp[V], yp[W]), inside, (gap, 0.0), (force, 0.0))
             see_pressure(m, t, k, inside, (force, 0.0))
@@ -201,13 +201,13 @@ def _close(m: Model, t: float, y: Floats, yp: Floats, coast: int, pair: int, k: 
 
 
 @compiled_once(EXPOSURES)
-def _touch(m: Model, t: float, y: Floats, yp: Floats, coast: int, pair: int, k: int) -> None:
+def _touch(m: Model, t: float, y: Floats, yp: Floats, flank: int, pair: int, k: int) -> None:
     """Add what a contact has been exposed to up to its onset or separation, and take single steps from there."""
-    gap, rate, _, inside = pair_gap(m, coast, pair, y[U], y[V], y[PHASE], y[W])
+    gap, rate, _, inside = pair_gap(m, flank, pair, y[U], y[V], y[PHASE], y[W])
     _begin_new(m, k, pair, inside)
     if joins_here(m, k, inside, gap):
         join(m, t, y, k, inside, (gap, rate))
-    force, slope = _force(m, t, y, (coast, pair, k), (gap, rate, inside))
+    force, slope = _force(m, t, y, (flank, pair, k), (gap, rate, inside))
     add_sliding(m, t, k, sliding_speeds(m, y, yp[V], yp[W]), inside, (gap, rate), (force, slope * rate))
     see_pressure(m, t, k, inside, (force, slope * rate))
     start_with_one_step(m)
@@ -241,7 +241,7 @@ def _force(
     m: Model, t: float, y: Floats, which: tuple[int, int, int], there: tuple[float, float, float]
 ) -> tuple[float, float]:
     """Force of a pair, given by flank, number and history, with a gap, a gap rate and a position; slope in the gap."""
-    (coast, number, k), (gap, rate, inside) = which, there
-    pair = PairState(coast, number, k, True, gap, rate, 0.0, inside, 0.0, False)
+    (flank, number, k), (gap, rate, inside) = which, there
+    pair = PairState(flank, number, k, True, gap, rate, 0.0, inside, 0.0, False)
     force = force_of_pair(m, t, y, pair, False)
     return force.load, force.by_gap

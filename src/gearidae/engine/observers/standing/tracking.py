@@ -13,8 +13,8 @@ from gearidae.engine.model.work_record import MOST_LEAVINGS
 from gearidae.engine.observers.standing.zeros import (
     add_zero,
     drop_left,
-    look_at_distances,
     make_zero,
+    note_distances,
     note_drive,
     note_slow,
 )
@@ -30,7 +30,7 @@ NEAR: Final = 3.0
 @compiled
 def begin(m: Model, t: float, y: Floats) -> None:
     """Go on from a start of the integration."""
-    s, position = m.state.standing, y[PHASE] + m.state.turns
+    s, position = m.state.standing, y[PHASE] + m.state.whole_pitches
     if m.state.extremes.begun == 0:
         s.low = position
         make_zero(m, HIGH, t * m.scene.time_unit, position, y, y[W] == 0.0)
@@ -53,16 +53,16 @@ def step(m: Model, here: int, y: Floats) -> None:
         s.rest_time += (now.time - last.time) * unit
     turned = now.speed_rate * last.speed_rate <= 0.0 and now.speed_rate != last.speed_rate
     if now.speed * last.speed <= 0.0 or (turned and _may_pass_zero(last, now)):
-        _look_for_zeros(m, here, y, turned)
+        _find_zeros(m, here, y, turned)
     s.way = _sign(now.speed)
     if s.zero_count > 0:
         if s.undriven != 0:
             note_drive(m, now.time)
         note_slow(m, now.time * unit, abs(now.speed) * m.scene.phase_rate / unit, now.position)
-        if s.near != 0 and abs(now.position - s.place) > NEAR * m.scene.phase_rate:
+        if s.near != 0 and abs(now.position - s.zero_position) > NEAR * m.scene.phase_rate:
             _go_away(m, last, now)
-        if now.time * unit >= s.look_time:
-            look_at_distances(m, now.time * unit, now.position)
+        if now.time * unit >= s.distances_time:
+            note_distances(m, now.time * unit, now.position)
         if abs(now.position - s.zero[0].position) > HALF_PITCH:
             _leave(m, now.time, now.position)
     if s.direction >= 0 and s.high_known != 0 and now.position < s.zero[HIGH].position - HALF_PITCH:
@@ -70,15 +70,15 @@ def step(m: Model, here: int, y: Floats) -> None:
         s.direction, s.low = -1, now.position
     if s.direction <= 0 and now.position > s.low + HALF_PITCH:
         s.direction, s.high_known = 1, 0
-    if s.left == 0 and abs(now.position - m.state.first_place) > HALF_PITCH:
+    if s.left == 0 and abs(now.position - m.state.first_position) > HALF_PITCH:
         s.left = 1
 
 
 @compiled(inline=True)
 def _may_pass_zero(last: Record, now: Record) -> bool:
     """Whether a speed of one sign at both ends may reach zero within a step: a cubic leaves its chord by less."""
-    bend = 0.25 * (now.time - last.time) * (abs(last.speed_rate) + abs(now.speed_rate))
-    return bool(min(abs(last.speed), abs(now.speed)) <= bend)
+    from_chord = 0.25 * (now.time - last.time) * (abs(last.speed_rate) + abs(now.speed_rate))
+    return bool(min(abs(last.speed), abs(now.speed)) <= from_chord)
 
 
 @compiled(inline=True)
@@ -93,7 +93,7 @@ def resume(m: Model, t: float, y: Floats) -> None:
     A change of what is held that is not the rest of all of it lets something go. A gear that comes away from rest may
     stick and slip for some vibrations yet: what lets it go near that place has held it since the rest.
     """
-    s, sign, position = m.state.standing, _sign(y[W]), y[PHASE] + m.state.turns
+    s, sign, position = m.state.standing, _sign(y[W]), y[PHASE] + m.state.whole_pitches
     if s.way != 0 and sign != s.way:
         add_zero(m, t, position, y, False)
     s.way = sign
@@ -110,9 +110,9 @@ def _go_away(m: Model, last: Record, now: Record) -> None:
     """Note when the gear has gone away from its last zero, within a step that may contain both."""
     s, unit, rate = m.state.standing, m.scene.time_unit, m.scene.phase_rate
     h = now.time - last.time
-    begin = min(max((s.place_time / unit - last.time) / h, 0.0), 1.0)
+    begin = min(max((s.zero_time / unit - last.time) / h, 0.0), 1.0)
     way = last.position, rate * last.speed, now.position, rate * now.speed
-    share = departure_of_cubic(begin, 1.0, HALVINGS, 0.0, s.place, NEAR * rate, h, *way)[1]
+    share = departure_of_cubic(begin, 1.0, HALVINGS, 0.0, s.zero_position, NEAR * rate, h, *way)[1]
     s.near, s.near_time = 0, (last.time + share * h) * unit
     s.near_position = cubic(share, h, *way)
 
@@ -124,7 +124,7 @@ def is_at_rest(m: Model) -> bool:
 
 
 @compiled_once(SOLVER)
-def _look_for_zeros(m: Model, here: int, y: Floats, turned: bool) -> None:
+def _find_zeros(m: Model, here: int, y: Floats, turned: bool) -> None:
     """Find zeros of the speed within a step: one where its sign changes, or two about an extremum beyond zero."""
     track = m.work.track
     last, now = track.point[track.last], track.point[here]

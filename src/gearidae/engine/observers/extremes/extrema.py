@@ -16,7 +16,7 @@ from gearidae.engine.observers.extremes.speeds import (
     note_hold,
     note_speed,
 )
-from gearidae.engine.observers.standing import follow as standing
+from gearidae.engine.observers.standing import tracking as standing
 from gearidae.engine.pairs.tooth_pairs import rigid_separation
 
 
@@ -62,8 +62,8 @@ def step(
 def _set_point(m: Model, i: int, t: float, y: Floats, yp: Floats, force: float) -> None:
     p = m.work.track.point[i]
     p.time, p.force = t, force_of_motion(m, t, y, yp, force)
-    p.travel, p.travel_rate, p.travel_bend = y[U], y[V], yp[V]
-    p.speed, p.speed_rate, p.position = y[W], yp[W], y[PHASE] + m.state.turns
+    p.travel, p.travel_rate, p.travel_acceleration = y[U], y[V], yp[V]
+    p.speed, p.speed_rate, p.position = y[W], yp[W], y[PHASE] + m.state.whole_pitches
 
 
 @compiled
@@ -82,7 +82,7 @@ def resume(m: Model, t: float, y: Floats) -> None:
     if m.scene.follow.gear != 0:
         standing.resume(m, t, y)
     if y[W] <= 0.0 < p.speed:
-        come_to_stand(m, t, y[PHASE] + m.state.turns, is_pulled_back(m, t, y))
+        come_to_stand(m, t, y[PHASE] + m.state.whole_pitches, is_pulled_back(m, t, y))
     p.speed = y[W]
     if m.scene.dry != 0 and m.state.slip == 0.0:
         note_hold(m, t)
