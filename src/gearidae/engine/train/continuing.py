@@ -31,22 +31,20 @@ from gearidae.records import EventKind, Words
 from gearidae.records.quantity import COUNT_HIGH
 from gearidae.scene.scene import TrainScene
 
-_OF_TRAIN: Final = ("turns", "time", "step", "throughput", "peak_kinetic", "kinetic", "last_root")
+_OF_TRAIN: Final = ("whole_pitches", "time", "step", "throughput", "peak_kinetic", "kinetic", "last_root")
 _OF_SHAFT: Final = ("begin", "slip", "rest_begin", "rest_time", "min_speed", "max_speed")
 _OF_MESH: Final = ("largest", "largest_time", "smallest", "smallest_time", "separation")
 """Numbers of the records that a run carries on, with those that a run after it carries on, too."""
 _COUNTS: Final = (
-    *(
-        "roots",
-        "next_sample",
-        "next_look",
-        "steps",
-        "evaluations",
-        "refused",
-        "guards",
-        "restarts",
-        "flight_steps",
-    ),
+    "roots",
+    "next_sample",
+    "next_look",
+    "steps",
+    "evaluations",
+    "refused",
+    "guards",
+    "restarts",
+    "flight_steps",
 )
 """Numbers of one run of the train."""
 _LAYOUT: Final = int(
@@ -210,7 +208,7 @@ def _carry_meshes(old: TrainProblem, new: TrainProblem) -> None:
     if follows != followed:
         for pair in new.problems:
             assign(pair.model.state.energy, np.zeros(1, STATE["energy"])[0])
-            for name in ("lag", "adhesion_lag_power", "adhesion_lag_power_rate"):
+            for name in ("adhesion_lag", "adhesion_lag_power", "adhesion_lag_power_rate"):
                 pair.model.state.history[name] = 0.0
     write_stored(new.model, new.model.y, after)
     if follows == followed:

@@ -86,8 +86,10 @@ def add_flank_friction(tm: TrainModel, k: int, m: Model, t: float, y: Floats) ->
             element = tm.elements[number]
             element.mesh, element.history, element.a, element.b = k, noted.history, mesh.a, mesh.b
             element.first, element.second, element.x, element.y = r1, -r2, x, z
-            bend = lever_rate(m, noted, surface_speed, tm.own[W]) * mesh.length_unit / mesh.time_unit**2
-            element.bend = bend + RETURN * speed / mesh.time_unit
+            acceleration = (
+                lever_rate(m, noted, surface_speed, tm.own[W]) * mesh.length_unit / mesh.time_unit**2
+            )
+            element.acceleration = acceleration + RETURN * speed / mesh.time_unit
             tm.box[LIMIT, number] = noted.limit * mesh.force_unit
             tm.box[UNIT, number] = NO_FORCE * mesh.force_unit
             tm.train[0].elements += 1
@@ -138,7 +140,13 @@ def hold_elements(tm: TrainModel, y: Floats, dy: Floats) -> None:
             number = train.elements
             element = tm.elements[number]
             element.mesh, element.history, element.a, element.b = -1, -1, i, i
-            element.first, element.second, element.bend, element.x, element.y = 1.0, 0.0, 0.0, 0.0, 0.0
+            element.first, element.second, element.acceleration, element.x, element.y = (
+                1.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+            )
             tm.box[UNIT, number] = shaft.no_torque
             train.elements += 1
     fill_gram(tm)
@@ -208,7 +216,7 @@ def balance_frictions(tm: TrainModel, within: bool) -> bool:
         for j in range(count):
             element = tm.elements[j]
             a, b = tm.shafts[element.a], tm.shafts[element.b]
-            free = element.bend + element.first * (a.moving_torque - a.slip * a.limit) / a.inertia
+            free = element.acceleration + element.first * (a.moving_torque - a.slip * a.limit) / a.inertia
             free += element.second * (b.moving_torque - b.slip * b.limit) / b.inertia
             tm.box[FREE_ACCELERATION, j] = free
             if element.mesh < 0:

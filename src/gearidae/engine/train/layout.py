@@ -166,7 +166,7 @@ ELEMENT: Final = record_type(
     ("first", REAL),  # its speed per speed of shaft a: r1 [m], or 1
     ("second", REAL),  # and of shaft b: -r2 [m], or 0
     (
-        "bend",
+        "acceleration",
         REAL,
     ),  # rate of its speed with shafts that keep theirs, less what errors have brought about [m/s^2]
     ("x", REAL),  # direction in which the friction pushes the hub of shaft a
