@@ -82,6 +82,8 @@ def test_free_gears_wait_for_a_ramp_and_stop_where_it_falls():
     lost = 7.5e-15
     assert stop == pytest.approx(2e-3 + (1.5e-14 - lost) / 3e-11, abs=2e-5)
     assert not moving[times[1:] > stop].any()
+    # asked for a time behind the stop alone
+    assert free.positions(0.0, 0.0, times[-1:])[0] == pytest.approx(where[-1], rel=1e-6)
 
 
 def test_a_schedule_repeats():

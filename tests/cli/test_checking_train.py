@@ -65,8 +65,7 @@ def test_numbers_for_programs(case, capfd):
     )
 
 
-def test_a_threshold_of_several_meshes_is_bad_input(case, capfd, tmp_path):
-    over = ["--over", "meshes.second.coating.sam_fraction=0,1"]
-    assert main(["threshold", case(chain()), *over, "-o", str(tmp_path / "out.nc")]) == 2
-    assert "trains of several are run by simulate and sweep alone" in capfd.readouterr().err
+def test_a_coating_map_of_several_meshes_is_bad_input(case, capfd, tmp_path):
+    assert main(["coating-map", case(chain()), "-o", str(tmp_path / "out.nc")]) == 2
+    assert "meshes = (2 meshes): must be one here" in capfd.readouterr().err
     assert not (tmp_path / "out.nc").exists()

@@ -120,7 +120,7 @@ models = []
 class Addresses:  # a model has no address here
     def __init__(self, m):
         models.append(m)
-        self.place = len(models) - 1
+        self.base = len(models) - 1
 
 
 for name in laws:

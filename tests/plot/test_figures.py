@@ -170,7 +170,7 @@ def test_uneven_steps_have_a_logarithmic_axis():
     assert not is_logarithmic(even)
     assert cell_edges(even) == pytest.approx([2.5, 3.5, 5.0, 7.0])
     assert is_logarithmic(uneven)
-    middles = np.sqrt(uneven.places[1:] * uneven.places[:-1])
+    middles = np.sqrt(uneven.positions[1:] * uneven.positions[:-1])
     assert cell_edges(uneven)[1:-1] == pytest.approx(middles)
 
 

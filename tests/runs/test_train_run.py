@@ -96,7 +96,7 @@ def test_an_archive_and_what_is_said_of_it(tmp_path, capfd):
         assert main([command, str(tmp_path / "out.nc"), "-o", str(tmp_path / name)]) == 0
     page = (tmp_path / "out.html").read_text(encoding="utf-8")
     assert "hub of idler" in page
-    assert page.count("<figure") == 1
+    assert page.count("<figure") == 2  # of its work, and the gears
     assert gd.open(tmp_path / "out.nc").attrs["judged_shaft"] == "output"
 
 

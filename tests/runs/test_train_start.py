@@ -135,7 +135,6 @@ def test_more_torque_lets_a_held_train_go():
         ({"meshes.one.phase": 0.1}, "meshes.one.phase = 0.1: must be left out"),
         ({"meshes.two.backlash": "0.51 um"}, "meshes.two.backlash = 5.1e-07: must be left out"),
         ({"load.shaft": "upper"}, "load.shaft = upper: must be output"),
-        ({"run.stop": "turns 2"}, "counts turns of a train's first run"),
     ],
 )
 def test_other_trains_are_refused(changes, message):
@@ -151,9 +150,7 @@ def test_other_names_and_another_order_are_refused():
         names = list(tables[key])
         names[1], names[2] = names[2], names[1]
         other = tables | {key: {name: tables[key][name] for name in names}}
-        with pytest.raises(
-            gd.SceneError, match=f"{key} = .*: must be .* in this order, as in the run to go on from"
-        ):
+        with pytest.raises(gd.SceneError, match=f"{key} = .*: must be .*, as in the run to go on from"):
             gd.simulate(Scene.from_dict(other), start=first)
     tables = chain(hubs=0.3)
     tables["shafts"]["input"]["teeth"] = 20
@@ -168,11 +165,11 @@ def test_a_damaged_state_is_refused(place):
     _, first, second = runs("adhesion")
     words = np.frombuffer(zlib.decompress(base64.b64decode(first.attrs["end_state"])), np.float64).copy()
     assert words.size > place
+    short = first.assign_attrs(end_state=base64.b64encode(zlib.compress(words[:-1].tobytes())).decode())
     words[place] = np.nan
     damaged = first.assign_attrs(end_state=base64.b64encode(zlib.compress(words.tobytes())).decode())
     with pytest.raises(gd.SceneError, match="checkpoint"):
         gd.simulate(second.gearidae.scene, start=damaged)
-    short = first.assign_attrs(end_state=base64.b64encode(zlib.compress(words[:-1].tobytes())).decode())
     with pytest.raises(gd.SceneError, match="not as many as this scene has"):
         gd.simulate(second.gearidae.scene, start=short)
 

@@ -136,7 +136,8 @@ class FreeTrain:
             )  # fmt: skip
             count = len(solved.t)
             first = len(times) - len(later)
-            where[first : first + count] = solved.y[0]
+            if count:  # it may have stopped before the first of these times
+                where[first : first + count] = solved.y[0]
             if solved.status != 1:
                 break
             now, at, speed = float(solved.t_events[0][0]), float(solved.y_events[0][0][0]), 0.0
