@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,7 @@ STEPS = 3_000
 """Steps of a run, about."""
 
 
+@cache  # of one process; short runs say how long one may be
 def random_train(seed: int, number: int) -> Scene:
     """Draw one train; the same numbers give the same train.
 
