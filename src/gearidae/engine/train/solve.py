@@ -24,6 +24,7 @@ from gearidae.engine.train.observe import kinetic_energy_of, write_stored
 from gearidae.engine.train.portable import PortableDriver
 from gearidae.engine.train.record import REST_NUMBERS, TRAIN_EVENT_NUMBERS
 from gearidae.errors import SceneError
+from gearidae.laws.shaft.own import law_address, switch_address
 from gearidae.records import Statistics, sample_times
 from gearidae.records.energy import EnergyBalance
 from gearidae.records.train_results import (
@@ -138,6 +139,10 @@ def solve_train(
     if changes:
         scene = scene.replace(changes)
     driver = driver_of_train(backend)
+    for table in (scene.drive, scene.load):
+        if table.law is not None:  # compiled in every process, and no part of what is compiled for trains
+            law_address(table.law.name)
+            switch_address(table.law.name)
     kept = _Kept(len(scene.train.shafts), len(scene.train.meshes))
     with compiling(TRAIN, HOW_LONG[TRAIN]):
         if blocks:
