@@ -337,11 +337,16 @@ def _begin_stretch(m: Model) -> None:
         s.segment[which] = int((ends <= time).sum())
 
 
-def _begin_balance(address: int, m: Model, y: Floats) -> None:
-    """Begin an energy balance that the other run has not kept, or leave out the one that it has."""
+def forget_balance(m: Model) -> None:
+    """Leave out what an energy balance has summed up so far."""
     assign(m.state.energy, np.zeros(1, STATE["energy"])[0])
     for name in ("adhesion_lag", "adhesion_lag_power", "adhesion_lag_power_rate"):
         m.state.history[name] = 0.0
+
+
+def _begin_balance(address: int, m: Model, y: Floats) -> None:
+    """Begin an energy balance that the other run has not kept, or leave out the one that it has."""
+    forget_balance(m)
     if m.scene.follow.balance:
         open_balance(address, y)
 

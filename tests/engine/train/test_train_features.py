@@ -16,6 +16,7 @@ from tests.reference.trains import chain, split
 
 import gearidae as gd
 from gearidae.engine import solve
+from gearidae.engine.train import solve as solving
 from gearidae.engine.train import solve_train
 from gearidae.engine.train.build import make_train
 from gearidae.engine.train.motion import torque_slopes
@@ -198,6 +199,16 @@ def test_a_law_that_chatters_ends_the_run(backend):
     assert solution.status == "law_chatter"
     assert solution.reached < 50e-6
     assert solution.statistics.steps < 20_000
+
+
+@pytest.mark.parametrize("backend", ["native", "sksundae"])
+def test_jumps_of_a_law_count_beyond_the_end_of_a_block(backend, monkeypatch):
+    """A block of 100 steps has not the 300 jumps by which a law is known to chatter."""
+    monkeypatch.setattr(solving, "STEPS", 100)
+    monkeypatch.setattr(solving, "PORTABLE_STEPS", 100)
+    law = {"name": "held_by_jumps", "parameters": [1.4e-11, 3700.0]}
+    scene = Scene.from_dict(chain(drive={"law": law}))
+    assert solve_train(scene, t_end=50e-6, samples=2, backend=backend).status == "law_chatter"
 
 
 # -- long runs -------------------------------------------------------------------------------------------------------

@@ -15,8 +15,7 @@ from typing import Final
 import numpy as np
 
 from gearidae.arrays import Floats
-from gearidae.engine.continuing import carry_over, refuse_other_bodies
-from gearidae.engine.model.state import STATE, assign
+from gearidae.engine.continuing import carry_over, forget_balance, refuse_other_bodies
 from gearidae.engine.setup.checkpoint import depth_of, pack
 from gearidae.engine.setup.checkpoint_checks import refused, require
 from gearidae.engine.setup.start import Start
@@ -207,9 +206,7 @@ def _carry_meshes(old: TrainProblem, new: TrainProblem) -> None:
     follows, followed = new.scene.run.balance, old.scene.run.balance
     if follows != followed:
         for pair in new.problems:
-            assign(pair.model.state.energy, np.zeros(1, STATE["energy"])[0])
-            for name in ("adhesion_lag", "adhesion_lag_power", "adhesion_lag_power_rate"):
-                pair.model.state.history[name] = 0.0
+            forget_balance(pair.model)
     write_stored(new.model, new.model.y, after)
     if follows == followed:
         new.energies[:], new.kinetic = old.energies, old.kinetic

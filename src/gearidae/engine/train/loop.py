@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Final
 
+from gearidae.arrays import Floats
 from gearidae.compiled import compiled
 from gearidae.engine.events.record import EVENTS_AT_ONCE
 from gearidae.engine.integrate.driver import BOUND_EXCEEDED, CHATTER
@@ -101,28 +102,45 @@ def look_due(tm: TrainModel) -> float:
 
 
 @compiled
+def next_due(tm: TrainModel) -> tuple[float, bool]:
+    """Time of the coming sample or look [s], whichever is first, and whether it is a look."""
+    sample, look = sample_due(tm), look_due(tm)
+    return min(sample, look), look < sample
+
+
+@compiled
+def has_room_for(tm: TrainModel, of_looks: bool, out: TrainOutput) -> bool:
+    """Whether a block has room for one more sample, or look."""
+    train = tm.train[0]
+    return bool(train.looks < out.looks.shape[0] if of_looks else train.rows < out.samples.shape[0])
+
+
+@compiled
+def write_due(tm: TrainModel, due: float, of_looks: bool, y: Floats, out: TrainOutput) -> None:
+    """Write the sample, or look, that is due at a time [s] with this state."""
+    train = tm.train[0]
+    if of_looks:
+        observe_train(tm, due, y, out.looks[train.looks])
+        train.looks += 1
+        train.next_look += 1
+    else:
+        observe_train(tm, due, y, out.samples[train.rows])
+        train.rows += 1
+        train.next_sample += 1
+
+
+@compiled
 def _sample_step(tm: TrainModel, time: float, h: float, out: TrainOutput) -> bool:
     """Write the samples and looks of a step up to a time, by its polynomial; whether the block had room for them."""
     train, n = tm.train[0], 2 * len(tm.shafts)
-    due = sample_due(tm)
-    while due <= time:
-        if train.rows >= out.samples.shape[0]:
+    while True:
+        due, of_looks = next_due(tm)
+        if due > time:
+            return True
+        if not has_room_for(tm, of_looks, out):
             return False
         state_at(tm, min((due - train.time) / h, 1.0), n, tm.between)
-        observe_train(tm, due, tm.between, out.samples[train.rows])
-        train.rows += 1
-        train.next_sample += 1
-        due = sample_due(tm)
-    due = look_due(tm)
-    while due <= time:
-        if train.looks >= out.looks.shape[0]:
-            return False
-        state_at(tm, min((due - train.time) / h, 1.0), n, tm.between)
-        observe_train(tm, due, tm.between, out.looks[train.looks])
-        train.looks += 1
-        train.next_look += 1
-        due = look_due(tm)
-    return True
+        write_due(tm, due, of_looks, tm.between, out)
 
 
 @compiled
@@ -234,7 +252,7 @@ def advance_train(tm: TrainModel, out: TrainOutput, most: int) -> None:
             return
         time = stop if h == stop - train.time else train.time + h
         value, share = train_guard(tm, time, new, True), 1.0
-        root, due = value < 0.0, min(sample_due(tm), look_due(tm))
+        root, due = value < 0.0, next_due(tm)[0]
         seen = wants_polynomial(tm)
         if (root and train.guard > 0.0) or due <= time or seen:
             make_polynomial(tm, h)

@@ -15,16 +15,15 @@ from gearidae.engine.pairs.tooth_pairs import flank_gaps, rigid_separation
 from gearidae.engine.train.formula import state_at
 from gearidae.engine.train.layout import OF_MESH, OF_SHAFT, TrainModel
 from gearidae.engine.train.motion import mesh_state, motion
+from gearidae.records.train_results import MESH_SAMPLES, SHAFT_SAMPLES
 
-SHAFT_COLUMNS: Final = 4
-MESH_COLUMNS: Final = 5
-COMMON_COLUMNS: Final = 3
-"""Numbers of a sample for each shaft, for each mesh, and for the train: those of `gearidae.records.train_results`."""
+_SHAFT_COLUMNS: Final = len(SHAFT_SAMPLES)
+_MESH_COLUMNS: Final = len(MESH_SAMPLES)
 NEAR: Final = 0.01
 """Share by which the force of a stage may lie beside that of the step's polynomial, at most: within this of an extreme
 so far a step is looked at closely."""
 FORCE_SAMPLES: Final = 9
-"""Places of a step at which the force is then looked at, before its extreme is bracketed."""
+"""Times of a step at which the force is then evaluated, before its extreme is bracketed."""
 HALVINGS: Final = 40
 """Of the bracket by the golden section."""
 _GOLDEN: Final = 0.5 * (math.sqrt(5.0) - 1.0)
@@ -48,7 +47,7 @@ def observe_train(tm: TrainModel, t: float, y: Floats, row: Floats) -> None:
         shaft = tm.shafts[i]
         row[at], row[at + 1] = y[n + i], shaft_angle(tm, i, y)
         row[at + 2], row[at + 3] = shaft.hub, math.atan2(shaft.load_y, shaft.load_x)
-        at += SHAFT_COLUMNS
+        at += _SHAFT_COLUMNS
     for k in range(len(tm.meshes)):
         mesh = tm.meshes[k]
         m = model_at(mesh.address)
@@ -57,7 +56,7 @@ def observe_train(tm: TrainModel, t: float, y: Floats, row: Floats) -> None:
         row[at], row[at + 1] = mesh.force, mesh.error
         row[at + 2], row[at + 3] = drive * mesh.length_unit, coast * mesh.length_unit
         row[at + 4] = touching
-        at += MESH_COLUMNS
+        at += _MESH_COLUMNS
     shaft = tm.shafts[train.load]
     resistance = train.dry * shaft.slip
     if shaft.slip == 0.0 and shaft.rubs != 0:

@@ -21,9 +21,9 @@ from gearidae.engine.portable import Trail
 from gearidae.engine.setup.problem import OWN_SAFETY
 from gearidae.engine.train.events import next_train_stop, train_guard
 from gearidae.engine.train.layout import TrainModel, TrainOutput
-from gearidae.engine.train.loop import finish_train_step, has_room, look_due, sample_due
+from gearidae.engine.train.loop import finish_train_step, has_room, has_room_for, next_due, write_due
 from gearidae.engine.train.motion import motion
-from gearidae.engine.train.observe import note_forces, observe_train
+from gearidae.engine.train.observe import note_forces
 from gearidae.engine.train.rest import any_held
 
 
@@ -38,8 +38,8 @@ def _guard(tm: TrainModel, t: float, y: Floats) -> float:
 
 
 @compiled
-def _observe(tm: TrainModel, t: float, y: Floats, row: Floats) -> None:
-    observe_train(tm, t, y, row)
+def _write(tm: TrainModel, due: float, of_looks: bool, y: Floats, out: TrainOutput) -> None:
+    write_due(tm, due, of_looks, y, out)
 
 
 @compiled
@@ -179,19 +179,10 @@ class PortableDriver:
     def _sample(self, out: TrainOutput, take: Callable[[], None]) -> None:
         """Write the samples up to the end of the step."""
         tm = self._tm
-        train = tm.train[0]
         assert self._trail is not None
-        while (due := sample_due(tm)) <= self._time:
-            if train.rows >= out.samples.shape[0]:
+        while (coming := next_due(tm))[0] <= self._time:
+            due, of_looks = coming
+            if not has_room_for(tm, of_looks, out):
                 take()
             state = tm.new if due == self._time else self._trail.at(due)
-            _observe(tm, due, state, out.samples[train.rows])
-            train.rows += 1
-            train.next_sample += 1
-        while (due := look_due(tm)) <= self._time:
-            if train.looks >= out.looks.shape[0]:
-                take()
-            state = tm.new if due == self._time else self._trail.at(due)
-            _observe(tm, due, state, out.looks[train.looks])
-            train.looks += 1
-            train.next_look += 1
+            _write(tm, due, of_looks, state, out)

@@ -23,6 +23,7 @@ from gearidae.engine.train.motion import torque_slopes
 from gearidae.engine.train.observe import kinetic_energy_of, write_stored
 from gearidae.engine.train.portable import PortableDriver
 from gearidae.engine.train.record import REST_NUMBERS, TRAIN_EVENT_NUMBERS
+from gearidae.engine.train.start import take_up
 from gearidae.errors import SceneError
 from gearidae.laws.shaft.own import law_address, switch_address
 from gearidae.records import Statistics, sample_times
@@ -185,11 +186,11 @@ def _follow(
 ) -> TrainSolution:
     """Run a train from where it stands.
 
-    Every block begins from its checkpoint, so that a run which is resumed there takes the same steps.
+    What follows from the state is set anew where a block begins, so that a run which is resumed there takes the same
+    steps.
     """
     tm, train = problem.model, problem.model.train[0]
     status, message, words = "", "", None
-    portable = None
     with compiling(TRAIN, HOW_LONG[TRAIN]):
         advance_train(tm, kept.out, 0)
     begun = time.perf_counter() - wall_time
@@ -203,15 +204,14 @@ def _follow(
             kept.take(problem)
             if train.error == 0:
                 words = pack_train(problem)
-            if words is not None and train.done == 0:
-                restore_train(problem, words)
-            if on_block is not None and words is not None:
-                seconds = time.perf_counter() - begun
-                tables = dict(zip(TABLES, kept.untold(), strict=True))
-                block = TrainBlock(float(train.time), seconds, tables, words, _totals(problem))
-                if on_block(block) is True:
-                    status, message = "stopped", "ended by on_block"
-                    break
+                take_up(tm)
+                if on_block is not None:
+                    seconds = time.perf_counter() - begun
+                    tables = dict(zip(TABLES, kept.untold(), strict=True))
+                    block = TrainBlock(float(train.time), seconds, tables, words, _totals(problem))
+                    if on_block(block) is True:
+                        status, message = "stopped", "ended by on_block"
+                        break
             if on_progress is not None:
                 on_progress(float(train.time), kept.events)
     except KeyboardInterrupt:
