@@ -10,12 +10,13 @@ from __future__ import annotations
 import itertools
 import logging
 import time
+from abc import ABC, abstractmethod
 from bisect import bisect_right
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any, Final, Literal, TypeAlias
+from typing import Any, ClassVar, Final, Literal, Self, TypeAlias
 
 import numpy as np
 import xarray as xr
@@ -31,7 +32,7 @@ from xarray.core.indexing import (
 from gearidae.archive.attributes import readable_scene
 from gearidae.archive.dataset import to_dataset
 from gearidae.archive.end_state import end_state_attributes
-from gearidae.archive.journal import Journal, journal_of
+from gearidae.archive.journal import RUN, Journal, journal_of
 from gearidae.archive.row_variables import archived, teeth_in
 from gearidae.archive.time_index import LARGEST_IN_MEMORY, with_times
 from gearidae.archive.totals import total_variables
@@ -103,8 +104,8 @@ class Checkpoint:
     balance: EnergyBalance | None = None
 
 
-class RunJournal:
-    """The journal of a single run.
+class JournalOfRun(ABC):
+    """What journals of single runs have in common: the head with the scene, and the whole frames behind it.
 
     Parameters
     ----------
@@ -115,6 +116,8 @@ class RunJournal:
 
     Attributes
     ----------
+    kind : str
+        What it is of, `gearidae.archive.journal.RUN` or another.
     attributes : dict
         Of the run's dataset, as it began.
     scene : Scene
@@ -124,14 +127,16 @@ class RunJournal:
     OSError
         If the disk does not give it.
     ValueError
-        If it is not of a run, or damaged at its head; a SceneError if its scene is none of this version.
+        If it is not of such a run, or damaged at its head; a SceneError if its scene is none of this version.
     """
 
+    kind: ClassVar[str]
+
     def __init__(self, path: Path, mode: Literal["r", "a"] = "r") -> None:
-        self._journal = Journal(path, "run", mode)
+        self._journal = Journal(path, self.kind, mode)
         try:
             self._read()
-            _ = self.checkpoint
+            self._check()
         except (KeyError, TypeError, AttributeError) as error:  # sound, but of something else
             self.close()
             raise ValueError(
@@ -140,11 +145,10 @@ class RunJournal:
         except BaseException:
             self.close()
             raise
-        self._checkpointed = self._written = time.monotonic()
-        self._held: list[Block] = []
+        self._written = time.monotonic()
 
     @classmethod
-    def create(cls, archive: Path, attributes: Mapping[str, Any]) -> RunJournal:
+    def create(cls, archive: Path, attributes: Mapping[str, Any]) -> Self:
         """Begin the journal of a run, in the place of whatever is there.
 
         Raises
@@ -153,11 +157,11 @@ class RunJournal:
             If the disk does not take it; nothing is left behind then.
         """
         path = journal_of(archive)
-        with Journal.create(path, "run", attributes=dict(attributes)) as journal:
+        with Journal.create(path, cls.kind, attributes=dict(attributes)) as journal:
             journal.sync()
         return cls(path, "a")
 
-    def __enter__(self) -> RunJournal:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -166,6 +170,36 @@ class RunJournal:
     def close(self) -> None:
         """Close the file."""
         self._journal.close()
+
+    def _read(self) -> None:
+        """Read the head, and the whole frames up to the first that is altered."""
+        found = [*self._journal.frames()]
+        self._frames = [
+            frame for frame in itertools.takewhile(lambda frame: frame is not None, found) if frame
+        ]
+        if len(self._frames) < len(found):
+            count = len(self._frames)
+            log.warning("%s is damaged: what comes after its frame %d is left out", self._journal.path, count)
+        self.attributes: dict[str, Any] = dict(self._journal.head.header["attributes"])
+        scene = readable_scene(self.attributes["scene"])
+        if scene is None:
+            raise ValueError("its scene is not readable")
+        self.scene = Scene.from_dict(scene)
+
+    @abstractmethod
+    def _check(self) -> None:
+        """Refuse frames that are not of the scene: raise a ValueError."""
+
+
+class RunJournal(JournalOfRun):
+    """The journal of a single run."""
+
+    kind = RUN
+
+    def __init__(self, path: Path, mode: Literal["r", "a"] = "r") -> None:
+        super().__init__(path, mode)
+        self._checkpointed = self._written
+        self._held: list[Block] = []
 
     def take(self, block: Block, statistics: Statistics, wall_time: float, *, last: bool = False) -> None:
         """Append a block of output.
@@ -290,20 +324,8 @@ class RunJournal:
             ds = ds.assign(total_variables(self.scene, [self.scene], [point]))
         return self.filled(ds)
 
-    def _read(self) -> None:
-        """Read the head, and the whole frames up to the first that is altered."""
-        found = [*self._journal.frames()]
-        self._frames = [
-            frame for frame in itertools.takewhile(lambda frame: frame is not None, found) if frame
-        ]
-        if len(self._frames) < len(found):
-            count = len(self._frames)
-            log.warning("%s is damaged: what comes after its frame %d is left out", self._journal.path, count)
-        self.attributes: dict[str, Any] = dict(self._journal.head.header["attributes"])
-        scene = readable_scene(self.attributes["scene"])
-        if scene is None:
-            raise ValueError("its scene is not readable")
-        self.scene = Scene.from_dict(scene)
+    def _check(self) -> None:
+        """Refuse frames that are not of the scene."""
         self._columns = columns_of(self.scene)
         sizes = {"samples": len(self._columns), **{kind.field: len(kind.columns) for kind in ROWS}}
         for number, frame in enumerate(self._frames, 1):
@@ -312,6 +334,7 @@ class RunJournal:
                 raise ValueError(f"its frame {number} is not of its scene")
         if sum(self._lengths("samples")) > self.scene.run.sample_count:
             raise ValueError("it has more samples than its scene")
+        _ = self.checkpoint
 
     def _lengths(self, field: str) -> list[int]:
         return [frame.shapes[field][1] for frame in self._frames]

@@ -140,15 +140,11 @@ def solve(
     """
     from gearidae import engine
 
-    def report(time: float, events: int) -> None:
-        if is_halted():
-            raise KeyboardInterrupt
-        if on_progress is not None:
-            on_progress(time, events)
-
     try:
         at = engine.AT_ONCE if start is None else start
-        return engine.solve(scene, backend=backend, on_progress=report, start=at, on_block=on_block)
+        return engine.solve(
+            scene, backend=backend, on_progress=_heeding(on_progress), start=at, on_block=on_block
+        )
     except SolverError as error:
         return unsolved("failed", str(error))
 
@@ -161,14 +157,8 @@ def solve_any(
         return solve(scene, backend, on_progress)
     from gearidae.runs.train_run import run_train  # which few runs need
 
-    def report(time: float, events: int) -> None:
-        if is_halted():
-            raise KeyboardInterrupt
-        if on_progress is not None:
-            on_progress(time, events)
-
     try:
-        return run_train(scene, backend, report)
+        return run_train(scene, backend, _heeding(on_progress))
     except SolverError as error:
         return nothing_of(scene, "failed", str(error))
 
@@ -297,6 +287,18 @@ def nothing_of(scene: Scene, status: str, message: str) -> AnySolution:
     if is_long_train(scene):
         return TrainSolution.none([*scene.shafts], [*scene.meshes], status, message)
     return unsolved(status, message)
+
+
+def _heeding(on_progress: Callable[[float, int], None] | None) -> Callable[[float, int], None]:
+    """What a solver reports to: it ends the run where the runs of this thread are to end."""
+
+    def report(time: float, events: int) -> None:
+        if is_halted():
+            raise KeyboardInterrupt
+        if on_progress is not None:
+            on_progress(time, events)
+
+    return report
 
 
 _of_this_thread = threading.local()

@@ -7,14 +7,14 @@ import math
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from gearidae import __version__, engine
 from gearidae.archive import RunJournal, open_archive, save, to_dataset
 from gearidae.archive.definition import LONGEST_WHOLE
 from gearidae.archive.disk import DiskError, disk_errors, refuse_too_small
 from gearidae.archive.journal import journal_of
-from gearidae.archive.unfinished import RESUMABLE, Checkpoint
+from gearidae.archive.unfinished import RESUMABLE, Checkpoint, JournalOfRun
 from gearidae.engine.backend import statistics_of
 from gearidae.errors import Interrupted, SceneError, SolverError
 from gearidae.progress import RunProgress, run_progress
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from gearidae.records import Block, Solution, Statistics
     from gearidae.scene import Scene
 
+Kept = TypeVar("Kept", bound=JournalOfRun)
 FREE_SPACE = "free some space and go on with --resume (resume=True)"
 
 
@@ -77,7 +78,7 @@ def stream(
         drop(beside)  # a kill may have left one
         return finished
     run = _Run(scene, target, start, backend)
-    with run.take_up(beside) if resume and beside.exists() else run.begin() as journal:
+    with run.take_up() if resume and beside.exists() else run.begin() as journal:
         with run_progress(progress, run.end) as report:
             ended = run.follow(journal, report, watched(report, on_block))
         ds = run.leave(journal, ended, compress=compress)
@@ -104,37 +105,13 @@ class _Run:
         empty = unsolved("running", "the run is not at its end yet")
         statistics = replace(empty.statistics, backend=self._backend, method=method, skipped=skipped)
         ds = self._dataset(replace(empty, statistics=statistics))
-        try:
-            refuse_too_small(
-                self._target.parent, 8 * len(columns_of(self._scene)) * self._scene.run.sample_count
-            )
-            journal = RunJournal.create(self._target, ds.attrs)
-            self._target.unlink(missing_ok=True)
-        except OSError as error:
-            raise SolverError(
-                f"the archive {self._target} could not be made ({error.strerror or error})",
-                time=0.0,
-                state={},
-                last_event="none",
-                advice="free some space, or reduce the number of samples (run.samples)",
-            ) from error
-        return journal
+        return begun(
+            RunJournal, self._target, ds.attrs, len(columns_of(self._scene)) * self._scene.run.sample_count
+        )
 
-    def take_up(self, beside: Path) -> RunJournal:
+    def take_up(self) -> RunJournal:
         """Open the journal that is there, and make sure that it is of this very run."""
-        try:
-            journal = RunJournal(beside, "a")
-        except (OSError, ValueError) as error:
-            reason = getattr(error, "strerror", None) or error
-            allowed = f"cannot be resumed from {beside.name} ({reason}): start anew with --overwrite (overwrite=True)"
-            raise SceneError("archive", self._target, allowed) from error
-        try:
-            refuse_other(self._target, journal.attributes, self._scene, self._start)
-            self._backend = same_backend(self._backend, str(journal.attributes["backend"]))
-            engine.choose_backend(self._backend, self._scene.run.method)
-        except BaseException:
-            journal.close()
-            raise
+        journal, self._backend = taken_up(RunJournal, self._target, self._scene, self._start, self._backend)
         return journal
 
     def follow(
@@ -236,6 +213,58 @@ class _Run:
         return ds.assign_attrs(started_attributes(self._start))
 
 
+def begun(kind: type[Kept], target: Path, attributes: Mapping[Any, Any], numbers: int) -> Kept:
+    """Make the journal of a run, in the place of an archive that may be replaced; the run has so many samples in all.
+
+    Raises
+    ------
+    SolverError
+        If the disk does not take it.
+    """
+    try:
+        refuse_too_small(target.parent, 8 * numbers)
+        journal = kind.create(target, attributes)
+        target.unlink(missing_ok=True)
+    except OSError as error:
+        raise SolverError(
+            f"the archive {target} could not be made ({error.strerror or error})",
+            time=0.0,
+            state={},
+            last_event="none",
+            advice="free some space, or reduce the number of samples (run.samples)",
+        ) from error
+    return journal
+
+
+def taken_up(
+    kind: type[Kept], target: Path, scene: Scene, start: engine.Start, backend: str
+) -> tuple[Kept, str]:
+    """Open the journal that is there, and make sure that it is of this very run; with the driver it was begun with.
+
+    Raises
+    ------
+    SceneError
+        If it is of another run, or damaged, or the driver is another.
+    """
+    beside = journal_of(target)
+    try:
+        journal = kind(beside, "a")
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        allowed = (
+            f"cannot be resumed from {beside.name} ({reason}): start anew with --overwrite (overwrite=True)"
+        )
+        raise SceneError("archive", target, allowed) from error
+    try:
+        _refuse_other(target, journal.attributes, scene, start)
+        backend = _same_backend(backend, str(journal.attributes["backend"]))
+        engine.choose_backend(backend, scene.run.method)
+    except BaseException:
+        journal.close()
+        raise
+    return journal, backend
+
+
 def left_of(target: Path) -> xr.Dataset:
     """Read the journal of a run that has been left; its claim lasts until the error is there."""
     ds = open_archive(target)
@@ -252,7 +281,7 @@ def finished_before(target: Path, scene: Scene, start: engine.Start) -> xr.Datas
     """Open the archive of this very run, which is at its end; refuse any other."""
     ds = open_archive(target)
     try:
-        refuse_other(target, ds.attrs, scene, start)
+        _refuse_other(target, ds.attrs, scene, start)
         if (status := ds.attrs["status"]) != "finished":
             allowed = f"has ended early ({status}): there is nothing to go on with"
             raise SceneError("archive", target, allowed)
@@ -262,7 +291,7 @@ def finished_before(target: Path, scene: Scene, start: engine.Start) -> xr.Datas
     return ds
 
 
-def refuse_other(target: Path, attributes: Mapping[str, Any], scene: Scene, start: engine.Start) -> None:
+def _refuse_other(target: Path, attributes: Mapping[str, Any], scene: Scene, start: engine.Start) -> None:
     """Refuse to resume a run with another scene, start or version, by the attributes of what is there."""
     differing = first_difference(json.loads(attributes["scene"]), scene.to_dict())
     refusal = ""
@@ -284,7 +313,7 @@ def drop(beside: Path) -> None:
         beside.unlink(missing_ok=True)
 
 
-def same_backend(backend: str, begun: str) -> str:
+def _same_backend(backend: str, begun: str) -> str:
     """Go on with the backend that the run was begun with: another would take other steps."""
     if backend not in ("auto", begun):
         raise SceneError("backend", backend, f"the run was begun with {begun}, and goes on with nothing else")

@@ -12,6 +12,7 @@ from gearidae.archive.journal import journal_of
 from gearidae.engine import AT_ONCE, Start
 from gearidae.errors import Interrupted, SceneError, SolverError
 from gearidae.progress import RunProgress, run_progress
+from gearidae.records.train_results import sample_columns
 from gearidae.runs.plausibility import log_doubts
 from gearidae.runs.running import early_end
 from gearidae.runs.starting import started_attributes
@@ -98,16 +99,19 @@ def _stream(
 ) -> xr.Dataset:
     """Run a train, or go on with a run of it, into an archive."""
     from gearidae.archive import open_archive, save
-    from gearidae.runs.streaming import FREE_SPACE, drop, finished_before, left_of
+    from gearidae.archive.train.journal import TrainJournal
+    from gearidae.runs.streaming import FREE_SPACE, drop, finished_before, left_of, taken_up
 
     beside = journal_of(target)
     if resume and target.exists():
         finished = finished_before(target, scene, start)
         drop(beside)  # a kill may have left one
         return finished
-    taking_up = resume and beside.exists()
-    with _taken_up(scene, target, start) if taking_up else _begun(scene, target, start, backend) as journal:
-        backend = str(journal.attributes["backend"]) if not taking_up else _same(backend, journal)
+    if resume and beside.exists():
+        journal, backend = taken_up(TrainJournal, target, scene, start, backend)
+    else:
+        journal, backend = _begun(scene, target, start, backend)
+    with journal:
 
         def take(block: TrainBlock) -> object:
             with disk_errors():
@@ -130,71 +134,39 @@ def _stream(
     return _ended(open_archive(target))
 
 
-def _same(backend: str, journal: TrainJournal) -> str:
-    """Go on with the driver that the run was begun with."""
-    from gearidae.runs.streaming import same_backend
-
-    return same_backend(backend, str(journal.attributes["backend"]))
-
-
-def _begun(scene: TrainScene, target: Path, start: Start, backend: str) -> TrainJournal:
-    """Make the journal of a run, in the place of an archive that may be replaced."""
+def _begun(scene: TrainScene, target: Path, start: Start, backend: str) -> tuple[TrainJournal, str]:
+    """Make the journal of a run, with the driver that runs it."""
     from gearidae.archive.provenance import provenance
     from gearidae.archive.train.journal import TrainJournal
     from gearidae.engine.train import driver_of_train
+    from gearidae.runs.streaming import begun
 
+    driver, train = driver_of_train(backend), scene.train
     attributes = {
         **provenance(scene, "begun"),
         "status": "running",
-        "backend": driver_of_train(backend),
+        "backend": driver,
         **({"start_time": start.time} if start.time else {}),
         **started_attributes(start),
     }
-    try:
-        journal = TrainJournal.create(target, attributes)
-        target.unlink(missing_ok=True)
-    except OSError as error:
-        raise SolverError(
-            f"the archive {target} could not be made ({error.strerror or error})",
-            time=0.0,
-            state={},
-            last_event="none",
-            advice="free some space, or reduce the number of samples (run.samples)",
-        ) from error
-    return journal
-
-
-def _taken_up(scene: TrainScene, target: Path, start: Start) -> TrainJournal:
-    """Open the journal that is there, and make sure that it is of this very run."""
-    from gearidae.archive.train.journal import TrainJournal
-    from gearidae.runs.streaming import refuse_other
-
-    beside = journal_of(target)
-    try:
-        journal = TrainJournal(beside, "a")
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        allowed = (
-            f"cannot be resumed from {beside.name} ({reason}): start anew with --overwrite (overwrite=True)"
-        )
-        raise SceneError("archive", target, allowed) from error
-    try:
-        refuse_other(target, journal.attributes, scene, start)
-    except BaseException:
-        journal.close()
-        raise
-    return journal
+    numbers = sample_columns(len(train.shafts), len(train.meshes)) * scene.run.sample_count
+    return begun(TrainJournal, target, attributes, numbers), driver
 
 
 def _not_written(left: xr.Dataset, target: Path, error: Exception, advice: str) -> SolverError:
     """Error of a run whose archive the disk does not take; the journal keeps what there is of it."""
-    from gearidae.archive.train import judged_view
-
     reached = float(left["reached"])
     message = f"the archive {target} could not be written ({error})"
-    made = early_end(judged_view(left), reached, message, advice)
-    made.dataset = left
-    return made
+    return _early_end(left, reached, message, advice)
+
+
+def _early_end(ds: xr.Dataset, reached: float, *words: str) -> SolverError:
+    """Error of a run that has ended early, with its dataset; see `gearidae.runs.running.early_end`."""
+    from gearidae.archive.train import judged_view
+
+    error = early_end(judged_view(ds), reached, *words)
+    error.dataset = ds
+    return error
 
 
 def run_train(
@@ -224,9 +196,5 @@ def _ended(ds: xr.Dataset) -> xr.Dataset:
         where = f"t = {reached:.4g} s of {ds.attrs['t_end']:.4g} s"
         raise Interrupted(f"stopped at {where}; what was computed is the error's dataset", ds)
     if status not in ("finished", "stopped"):
-        from gearidae.archive.train import judged_view
-
-        error = early_end(judged_view(ds), reached)
-        error.dataset = ds
-        raise error
+        raise _early_end(ds, reached)
     return ds

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-import itertools
-import logging
 import time
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gearidae.archive.attributes import readable_scene
-from gearidae.archive.journal import TRAIN, Frame, Journal, journal_of
+from gearidae.archive.journal import TRAIN, Frame
 from gearidae.archive.train.dataset import train_dataset
-from gearidae.archive.unfinished import CHECKPOINT_SECONDS, CHECKPOINT_SHARE, RESUMABLE
+from gearidae.archive.unfinished import CHECKPOINT_SECONDS, CHECKPOINT_SHARE, RESUMABLE, JournalOfRun
 from gearidae.records import Statistics, sample_times
 from gearidae.records.train_results import (
     MESH_TOTALS,
@@ -27,72 +23,17 @@ from gearidae.records.train_results import (
     columns_of,
     solution_of,
 )
-from gearidae.scene import Scene, is_long_train
-
-log = logging.getLogger(__name__)
+from gearidae.scene import is_long_train
 
 
-class TrainJournal:
-    """The journal of a single run of a train.
+class TrainJournal(JournalOfRun):
+    """The journal of a single run of a train."""
 
-    Parameters
-    ----------
-    path : Path
-        The journal.
-    mode : {"r", "a"}, optional
-        To read, or to go on with the run.
-
-    Attributes
-    ----------
-    attributes : dict
-        Of the run's dataset, as it began.
-
-    Raises
-    ------
-    OSError
-        If the disk does not give it.
-    ValueError
-        If it is not of a train, or damaged at its head.
-    """
+    kind = TRAIN
 
     def __init__(self, path: Path, mode: Literal["r", "a"] = "r") -> None:
-        self._journal = Journal(path, TRAIN, mode)
+        super().__init__(path, mode)
         self._held: list[TrainBlock] = []
-        self._written = time.monotonic()
-        try:
-            self._read()
-        except (KeyError, TypeError, AttributeError) as error:  # sound, but of something else
-            self.close()
-            raise ValueError(
-                f"it is not of a run of this version ({type(error).__name__}: {error})"
-            ) from error
-        except BaseException:
-            self.close()
-            raise
-
-    @classmethod
-    def create(cls, archive: Path, attributes: Mapping[str, Any]) -> TrainJournal:
-        """Begin the journal of a run, in the place of whatever is there.
-
-        Raises
-        ------
-        OSError
-            If the disk does not take it; nothing is left behind then.
-        """
-        path = journal_of(archive)
-        with Journal.create(path, TRAIN, attributes=dict(attributes)) as journal:
-            journal.sync()
-        return cls(path, "a")
-
-    def __enter__(self) -> TrainJournal:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
-    def close(self) -> None:
-        """Close the file."""
-        self._journal.close()
 
     def take(self, block: TrainBlock) -> None:
         """Append a block; several that come in quick succession are one frame.
@@ -159,8 +100,8 @@ class TrainJournal:
             message = f"; checkpoint at {blocks[-1].time:g} s"
         run = self.scene.run
         solution = solution_of(
-            [shaft.name for shaft in self.scene.train.shafts],
-            [mesh.name for mesh in self.scene.train.meshes],
+            [shaft.name for shaft in self._of_train.train.shafts],
+            [mesh.name for mesh in self._of_train.train.meshes],
             sample_times(start, run.duration, run.sample_count),
             np.empty(0),
             tables,
@@ -174,32 +115,22 @@ class TrainJournal:
             ),
             checkpoint=blocks[-1].checkpoint if blocks else None,
         )
-        ds = train_dataset(self.scene, solution)
+        ds = train_dataset(self._of_train, solution)
         kept = {name: self.attributes[name] for name in ("started_from", "parent") if name in self.attributes}
         return ds.assign_attrs(kept)
 
-    def _read(self) -> None:
-        """Read the head, and the whole frames up to the first that is altered."""
-        found = [*self._journal.frames()]
-        self._frames: list[Frame] = [
-            frame for frame in itertools.takewhile(lambda frame: frame is not None, found) if frame
-        ]
-        if len(self._frames) < len(found):
-            count = len(self._frames)
-            log.warning("%s is damaged: what comes after its frame %d is left out", self._journal.path, count)
-        self.attributes: dict[str, Any] = dict(self._journal.head.header["attributes"])
-        scene = readable_scene(self.attributes["scene"])
-        made = None if scene is None else Scene.from_dict(scene)
-        if made is None or not is_long_train(made):
-            raise ValueError("its scene is not readable")
-        self.scene = made
-        self._counts = n, m = len(made.train.shafts), len(made.train.meshes)
+    def _check(self) -> None:
+        """Refuse frames that are not of the scene."""
+        if not is_long_train(self.scene):
+            raise ValueError("its scene is no train of several meshes")
+        self._of_train = self.scene
+        self._counts = n, m = len(self.scene.train.shafts), len(self.scene.train.meshes)
         sizes = {name: columns_of(name, n, m) for name in (*TABLES, "resting")}
         for number, frame in enumerate(self._frames, 1):
             columns = {name: shape[1] for name, shape in frame.shapes.items() if len(shape) == 2}
             if columns != sizes or len(frame.shapes.get("state", ())) != 1:
                 raise ValueError(f"its frame {number} is not of its scene")
-        if sum(frame.shapes["samples"][0] for frame in self._frames) > made.run.sample_count:
+        if sum(frame.shapes["samples"][0] for frame in self._frames) > self.scene.run.sample_count:
             raise ValueError("it has more samples than its scene")
 
     def _block(self, frame: Frame) -> TrainBlock:
