@@ -214,6 +214,32 @@ def test_pictures_are_overwritten_only_if_asked(low, folder):
     assert (folder / "low.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.parametrize(
+    ("command", "made"),
+    [
+        (["plot", "low.nc"], "low.png"),
+        (["plot", "low.nc", "--picture", "gear_speed"], "low_gear_speed.png"),
+        (["plot", "low.nc", "--picture", "teeth", "--frames", "2"], "low_teeth.gif"),
+        (["report", "low.nc"], "low.html"),
+        (["explore", "low.nc"], "low_explore.html"),
+    ],
+)
+def test_pictures_and_pages_are_made_again_under_their_own_names_only(command, made, low, folder, capfd):
+    main(["run", low, *SHORT])
+    assert main(command) == 0
+    first = (folder / made).read_bytes()
+    (folder / made).write_bytes(first + b" ")
+    assert main(command) == 0
+    assert (folder / made).read_bytes() == first
+    capfd.readouterr()
+    assert main([*command, "-o", made]) == 2
+    assert "exists already" in capfd.readouterr().err
+    (folder / made).write_bytes(first[:8] + b"by another program")
+    assert main(command) == 2
+    assert "--overwrite" in capfd.readouterr().err
+    assert (folder / made).read_bytes() == first[:8] + b"by another program"
+
+
 def test_a_solver_in_trouble_is_exit_3_and_the_archive_is_kept(low, folder, capfd, end_early):
     end_early("chatter", share=0.4)
     assert main(["run", low, *SHORT]) == 3

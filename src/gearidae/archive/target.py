@@ -18,6 +18,11 @@ from gearidae.errors import DiskFullError, SceneError
 _USUAL_LONGEST: Final = 255
 """Bytes of a file's name, where the system does not say."""
 
+MADE_BY: Final = "made by gearidae"
+"""What pictures and pages say at their beginning, so that they are told from files of other programs."""
+_HEAD: Final = 4096
+"""Bytes at the beginning of a file in which that stands: behind the colours of a GIF."""
+
 _CLAIMED: Final[ContextVar[frozenset[Path]]] = ContextVar("claimed", default=frozenset())
 """Archives that the studies under way in this thread will save."""
 
@@ -39,6 +44,17 @@ def keeps_inputs(paths: Iterable[str]) -> Iterator[None]:
 def is_input(path: Path) -> bool:
     """Whether a path is one of the files that the command under way reads."""
     return path.exists() and (path.stat().st_dev, path.stat().st_ino) in _INPUTS.get()
+
+
+def is_our_own(path: Path) -> bool:
+    """Whether a file is a picture or a page that this program has made, by what stands at its beginning."""
+    if not path.is_file():
+        return False
+    try:
+        with path.open("rb") as file:
+            return MADE_BY.encode() in file.read(_HEAD)
+    except OSError:
+        return False
 
 
 def as_path(path: str | os.PathLike[str], name: str = "archive") -> Path:

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 import gearidae as gd
 from gearidae.archive.select import scene_of, single_run, swept_dims
+from gearidae.archive.target import is_our_own
 from gearidae.cli.case import default_output, selected
 from gearidae.cli.codes import DONE
 from gearidae.cli.output import print_line
@@ -57,8 +58,8 @@ def draw(
     picture : str or None
         Name of a function of `gearidae.plot`; None for the overview, the map, or outcomes where there are no samples.
     output : Path or None
-        Image to write, its format by its extension; None for the archive's name with ``.png``, or ``.gif`` for a moving
-        picture.
+        Image to write, its format by its extension; None for the archive's name, with that of the picture where one is
+        named, and ``.png``, or ``.gif`` for a moving picture.
     select : sequence of str
         ``dimension=value``: which run of a sweep.
     time : str or None
@@ -74,7 +75,7 @@ def draw(
     style : str or None
         As for `gearidae.plot.style`.
     overwrite : bool
-        Whether the image may replace a file.
+        Whether the image may replace any file; under a name of its own it replaces what this program has made.
 
     Returns
     -------
@@ -108,32 +109,43 @@ def draw(
     ds, kind = open_product(archive)
     usual = next(iter(usual_pictures(ds, kind)))
     ds = selected(ds, select, "--select", swept_dims(ds) if select else ())
+    ending = ".gif" if moves else ".png"
+    target, replaces = _place(
+        archive, output, ending if picture is None else f"_{picture}{ending}", overwrite=overwrite
+    )
     if moves:
         if time is not None:
             raise SceneError(
                 "--time", time, "is for a single picture; a moving picture needs --from and --to"
             )
         start, stop = span
-        target = getattr(gd.plot, _MOVING[str(picture)])(
+        getattr(gd.plot, _MOVING[str(picture)])(
             ds,
-            output or default_output(str(archive), ".gif"),
+            target,
             start=0.0 if start is None else quantity("--from", start, "s"),
             stop=None if stop is None else quantity("--to", stop, "s"),
             frames=100 if frames is None else frames,
-            overwrite=overwrite,
+            overwrite=replaces,
             dpi=_DPI_OF_FRAMES if dpi is None else dpi,
         )
     else:
-        target = output or default_output(str(archive), ".png")
         at = {} if time is None else {"time": quantity("--time", time, "s")}
         drawn = getattr(gd.plot, picture or usual)(ds, **at)
         figure = drawn if isinstance(drawn, Figure) else drawn.get_figure(root=True)
         assert figure is not None
         if inches is not None:
             figure.set_size_inches(inches)
-        gd.plot.write(figure, target, overwrite=overwrite, dpi=dpi)
+        gd.plot.write(figure, target, overwrite=replaces, dpi=dpi)
     print_line(f"Picture: {target}")
     return DONE
+
+
+def _place(archive: Path, output: Path | None, ending: str, *, overwrite: bool) -> tuple[Path, bool]:
+    """Name the file to write, and say whether it may replace one: by default a picture or page made before."""
+    if output is not None:
+        return output, overwrite
+    target = default_output(str(archive), ending)
+    return target, overwrite or is_our_own(target)
 
 
 def _inches(text: str) -> tuple[float, float]:
@@ -165,7 +177,7 @@ def report_archive(
     select : sequence of str
         ``dimension=value``: which part of a sweep.
     overwrite : bool
-        Whether the page may replace a file.
+        Whether the page may replace any file; under a name of its own it replaces what this program has made.
     teeth : bool or None
         Whether to show the teeth in mesh; None: unless it takes long.
 
@@ -191,8 +203,8 @@ def report_archive(
         ds = ds if swept_dims(ds) else single_run(ds)
     if ATTRIBUTE not in ds.attrs:
         ds = with_validity(ds, gd.Scene.from_dict(scene_of(ds)))
-    target = output or default_output(str(archive), ".html")
-    target = write_report(ds, target, overwrite=overwrite, teeth=teeth)
+    target, replaces = _place(archive, output, ".html", overwrite=overwrite)
+    write_report(ds, target, overwrite=replaces, teeth=teeth)
     print_line(f"Report: {target}")
     return DONE
 
@@ -219,7 +231,7 @@ def explore_archive(
     span : tuple of str or None
         First and last time, in seconds or with a unit.
     overwrite : bool
-        Whether the page may replace a file.
+        Whether the page may replace any file; under a name of its own it replaces what this program has made.
     teeth : bool
         Whether to add what each pair of teeth does.
 
@@ -241,8 +253,7 @@ def explore_archive(
     ]
     if ends != [None, None] and "time" in ds.dims:
         ds = ds.sel(time=slice(*ends))
-    target = gd.explore(
-        ds, output or default_output(str(archive), "_explore.html"), overwrite=overwrite, teeth=teeth
-    )
+    target, replaces = _place(archive, output, "_explore.html", overwrite=overwrite)
+    gd.explore(ds, target, overwrite=replaces, teeth=teeth)
     print_line(f"Page: {target}")
     return DONE

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure, SubFigure
 
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
-from gearidae.plot.files import BY_FFMPEG, MOVING, whole_file
+from gearidae.plot.files import BY_FFMPEG, MOVING, note_in_gif, whole_file
 from gearidae.plot.teeth_view import TeethView, mesh_states, recorded_until
 from gearidae.plot.train_view import TrainState, TrainView, train_run, train_states
 from gearidae.records.tooth_states import MeshState
@@ -167,6 +167,8 @@ def _animate(
             for state in states:
                 view.draw(state)
                 writer.grab_frame()
+        if part.suffix == ".gif":
+            note_in_gif(part)
     return Path(path)
 
 

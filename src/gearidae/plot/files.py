@@ -17,6 +17,8 @@ from gearidae.errors import SceneError
 _DPI = 200.0
 BY_FFMPEG = ("mp4", "webm")
 """Endings of moving pictures that need ffmpeg."""
+_NOTE = {"png": {"Comment": target.MADE_BY}}
+"""What a picture says of itself, of the ending that the command line gives by itself."""
 MOVING = ("gif", "webp", *BY_FFMPEG)
 """Endings of moving pictures."""
 
@@ -57,7 +59,7 @@ def write(
         if dpi is None:
             dpi = float(mpl.rcParams["savefig.dpi"]) if is_set("savefig.dpi") else _DPI
         with mpl.rc_context({"svg.fonttype": "none"}):  # text stays text
-            root.savefig(part, format=_kind(part), dpi=dpi)
+            root.savefig(part, format=_kind(part), dpi=dpi, metadata=_NOTE.get(_kind(part)))
     return Path(path)
 
 
@@ -92,6 +94,16 @@ def whole_file(
         raise SceneError("picture", path, f"must end in one of {endings}")
     with target.whole_file(path, overwrite=overwrite, name="picture", ending=f".{ending}") as part:
         yield part
+
+
+def note_in_gif(path: Path) -> None:
+    """Say in a GIF of several pictures that this program made it, as a comment behind the colours of all pictures."""
+    content = path.read_bytes()
+    has_colours, colours = content[10] & 0x80, content[10] & 0x07
+    at = 13 + (3 << (colours + 1) if has_colours else 0)
+    text = target.MADE_BY.encode()
+    comment = b"\x21\xfe" + bytes([len(text)]) + text + b"\x00"
+    path.write_bytes(content[:at] + comment + content[at:])
 
 
 def _kind(path: Path) -> str:

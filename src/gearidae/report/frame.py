@@ -8,6 +8,7 @@ from importlib.resources import files
 import xarray as xr
 
 from gearidae.archive.select import scene_of
+from gearidae.archive.target import MADE_BY
 from gearidae.report import html
 from gearidae.report.tables import parameter_tables, provenance_list, validity_table
 
@@ -40,6 +41,7 @@ def page(ds: xr.Dataset, kind: str, sentence: str, sections: Sequence[str], scri
     main = "\n".join(part for part in (*sections, *common) if part)
     script = "\n".join(_resource(file) for file in scripts)
     return f"""<!DOCTYPE html>
+<!-- {MADE_BY} -->
 <html lang="en">
 <head>
 <meta charset="utf-8">
