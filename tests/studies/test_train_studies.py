@@ -14,6 +14,7 @@ import gearidae as gd
 from gearidae.archive.train.variables import MESH_TOTALS, OF_JUDGED, SHAFT_TOTALS
 from gearidae.cli import main
 from gearidae.scene import Scene, dump_case
+from gearidae.studies.declared.campbell import STUDY as CAMPBELL
 from gearidae.studies.declared.ensemble import STUDY as ENSEMBLE
 from gearidae.studies.declared.operating_map import STUDY as MAP
 from gearidae.studies.declared.starting_torque import STUDY as STARTING
@@ -133,3 +134,86 @@ def test_a_ramp_breaks_away_at_the_static_torque(angle, torque):
     )
     assert float(ds["breakaway_torque"]) == pytest.approx(torque, rel=5e-6, abs=0.0)
     assert len(json.loads(ds["standstill_list"].item())) == 1
+
+
+FREE = {"drive": {"torque": 1.2e-11}, "load": {"torque": 0.0}, "initial": REST}
+INERTIA = 9.6e-21 * 4.0**2 + 1.536e-19 * 2.0**2 + 4.2e-18
+"""Of the free chain at its output [kg m^2]."""
+
+
+@pytest.mark.parametrize(
+    ("judged", "pitch"), [("output", 2.0 * np.pi / 76), ("idler", 2.0 * np.pi / 38 / 2.0)]
+)
+def test_trains_start_when_their_torque_says(judged, pitch):
+    """A free train is at constant acceleration; a pitch of the judged shaft, here as the way of the output [rad]."""
+    free = Scene.from_dict(chain(**FREE)).replace({"run.judged": judged})
+    half = np.sqrt(2.0 * pitch * INERTIA / (4.0 * 6e-12))
+    ds = gd.studies.start_probability(
+        free, {"drive.torque": "uniform(2e-12, 1e-11)"}, 4, by=[half, 10.0 * half], progress=False
+    )
+    exact = np.sqrt(2.0 * pitch * INERTIA / (4.0 * ds.torque.values))
+    # the input comes a gap of 36 nm before the output moves, and the teeth bounce: hundredths of a pitch
+    assert ds.start_time.values == pytest.approx(exact, rel=0.05)
+    assert ds.started.values.tolist() == [2, 4]
+
+
+def test_trains_that_are_turned_back_have_not_started():
+    back = Scene.from_dict(chain(**FREE))
+    ds = gd.studies.start_probability(
+        back, {"drive.torque": "uniform(-1e-11, -8e-12)"}, 2, by=["1 ms"], progress=False
+    )
+    assert (int(ds.started[0]), ds.members.values.tolist()) == (0, [2])
+
+
+def test_tolerances_are_compared_by_the_judged_shaft_and_its_mesh():
+    short = Scene.from_dict(chain()).replace({"run.duration": "20 us"})
+    of = ["gear_angle", "largest_mesh_force", "damping_loss"]
+    ds = gd.studies.convergence(short, of, rtols=[1e-5, 1e-6, 1e-7], progress=False)
+    assert ds["verdict"].values.tolist() == ["converges"] * 3
+    run = gd.simulate(short, rtol=1e-7, progress=False)
+    known = [
+        run["gear_angle"].values[-1],
+        run["largest_mesh_force"].sel(mesh="second"),
+        run["damping_loss"].sum(),
+    ]
+    assert ds["reference"].values == pytest.approx(np.array(known, dtype=float), rel=1e-4)
+    with pytest.raises(gd.SceneError, match="more than a number"):
+        gd.studies.convergence(short, ["hub_loss"], progress=False)
+
+
+@pytest.fixture(scope="module")
+def campbell():
+    held = Scene.from_dict(chain(load={"torque": 4.0 * 1.2e-11})).replace({"run.samples": 1501})
+    return gd.studies.campbell(held, [3000.0, 6000.0], multiples=[1, 30, 100], progress=False)
+
+
+def test_a_campbell_diagram_of_a_train_has_its_meshes_and_modes(campbell):
+    """The natural frequencies are those of the prototype, under the dry load that the drive carries at each speed."""
+    assert campbell["natural_frequencies"].values * 2.0 * np.pi == pytest.approx(
+        np.array([[2.532629e6] * 2, [6.053399e6] * 2]), rel=1e-6
+    )
+    assert campbell["mean_speed"].values == pytest.approx([3000.0, 6000.0], rel=0.05)
+    turning = campbell["mean_speed"].values / (2.0 * np.pi)
+    assert campbell["mesh_frequencies"].values == pytest.approx(np.array([19.0 * turning] * 2), rel=1e-12)
+    assert campbell["shaft_ratio"].values.tolist() == [1.0, 0.5, 0.25]
+    speed = float(campbell["critical_speeds"].sel(mesh="second", mode=1, multiple=30))
+    meets = np.interp(speed, [3000.0, 6000.0], campbell["mesh_frequencies"].sel(mesh="second"))
+    assert 30.0 * meets == pytest.approx(2.532629e6 / (2.0 * np.pi), rel=1e-6)
+    assert float(campbell["critical_speed"].sel(multiple=100)) == pytest.approx(
+        float(campbell["critical_speeds"].sel(mesh="second", mode=2, multiple=100)), nan_ok=True
+    )
+    assert (
+        f"30 times mesh first and second meets natural frequency 1 at {speed:.4g} rad/s"
+        in CAMPBELL.sentence(campbell)
+    )
+    assert any(row[0].startswith("30 x mesh first and second") for row in CAMPBELL.rows(campbell))
+
+
+def test_its_picture_has_a_line_for_each(campbell):
+    ax = gd.plot.campbell(campbell)
+    labels = [line.get_label() for line in ax.get_lines()]
+    assert {"mesh first and second and multiples", "natural frequency 1", "natural frequency 2"} <= set(
+        labels
+    )
+    assert ax.get_xlabel() == "speed of input (rad/s)"
+    ax.figure.canvas.draw()

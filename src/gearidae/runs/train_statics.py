@@ -81,8 +81,9 @@ def _own_torque(scene: TrainScene) -> float:
     return mean_over_run(scene, scene.drive.torque, scene.drive.schedule)
 
 
-def resistances(scene: TrainScene) -> tuple[Floats, Floats, Floats]:
+def resistances(scene: GearScene | TrainScene) -> tuple[Floats, Floats, Floats]:
     """Mean dry resistance [N m], viscous [N m s] and quadratic drag [N m s^2] of each shaft, with those of the load."""
+    assert scene.shafts is not None  # a pair derives them
     shafts = scene.shafts.values()
     dry, viscous, drag = (
         np.array([getattr(shaft, key) for shaft in shafts]) for key in ("resistance", "viscous", "drag")

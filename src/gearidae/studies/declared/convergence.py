@@ -15,6 +15,7 @@ import xarray as xr
 
 from gearidae.archive.output_selection import OutputSelection, read_keep
 from gearidae.archive.provenance import provenance
+from gearidae.archive.train import judged_view
 from gearidae.archive.variables import by_name
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
@@ -65,7 +66,7 @@ def convergence(
     of : sequence of str, optional
         Extremes (``stick_time``, ``largest_mesh_force``), terms of the energy balance (``adhesion_loss``), and sampled
         variables (``gear_angle``), of which the value at the end of the run counts. By default speeds, force, angle and
-        adhesion loss.
+        adhesion loss. Of a train they are of the judged shaft and of the mesh that drives it, losses of the whole.
     target : float, optional
         Relative error that is wanted.
     rtols : sequence of float, optional
@@ -98,7 +99,7 @@ def convergence(
     >>> scene = gd.preset("teodorescu2009_low_speed")
     >>> found = gd.studies.convergence(scene, of=["adhesion_loss", "stick_time"])  # doctest: +SKIP
     """
-    base, execution = prepared(scene, options, samples=2)
+    base, execution = prepared(scene, options, samples=2, trains=True)
     names = list((_OF_GEARS if base.roller is None else _OF_ROLLERS) if of is None else of)
     selection = _keep(base, names)
     ladder = _ladder(rtols)
@@ -107,7 +108,7 @@ def convergence(
     plan = _plan(base, ladder)
 
     def work(kept: Any) -> xr.Dataset:
-        runs = run_plan(plan, execution, kept, selection)
+        runs = judged_view(run_plan(plan, execution, kept, selection))
         return _dataset(scene, runs, names, ladder, target)
 
     settings = [names, ladder.tolist(), target]

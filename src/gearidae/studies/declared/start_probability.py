@@ -6,6 +6,7 @@ until it is written.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, Unpack
 
@@ -18,7 +19,8 @@ from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.runs.execution import RunOptions, prepared
 from gearidae.runs.sweeping import run_plan
-from gearidae.scene import GearScene, require_gears
+from gearidae.scene import GearScene, TrainScene, require_meshes
+from gearidae.scene.judged import judged_pitch, judged_shaft
 from gearidae.scene.pairs import quantities
 from gearidae.scene.pairs import texts as read_texts
 from gearidae.scene.prefixes import with_prefix
@@ -37,6 +39,8 @@ if TYPE_CHECKING:
 
 _MEMBERS: Final = 64
 """By default: a probability of one half is then known to 0.12."""
+_HALF: Final = 0.5
+"""Pitches: a gear that has come one, and is more than this behind where it was, has come it backwards."""
 _TO_THE_END: Final = 1e-9
 """Part of the longest time within which a run has come to its end: the gear has not turned a pitch."""
 
@@ -60,7 +64,7 @@ def start_probability(
     Parameters
     ----------
     scene : Scene
-        With gears.
+        With gears, a pair or a train, whose judged shaft has to turn one pitch of the mesh that drives it.
     vary : mapping of str to object
         Keys and their distributions, as for `ensemble`; ``{"contact.seed": "seeds"}`` numbers seeds of populations,
         ``{"mesh.pitch_error_seed": "seeds"}`` those of errors of teeth.
@@ -101,7 +105,7 @@ def start_probability(
     >>> vary = {"load.torque": "normal(30 pN m, 4 pN m)"}
     >>> found = gd.studies.start_probability(scene, vary, by=["3 ms", "5 ms"])  # doctest: +SKIP
     """
-    base, execution = prepared(require_gears(scene), options, samples="off")
+    base, execution = prepared(require_meshes(scene), options, samples="off", trains=True)
     check_confidence(confidence)
     check_design(size, design, seed, indices=False)
     times = _times(base, by)
@@ -127,22 +131,32 @@ def _times(scene: Scene, by: Sequence[Any] | float | str | None) -> Floats:
     return np.unique(times)
 
 
-def _followed(scene: GearScene, times: Floats) -> GearScene:
-    """Let a scene end at the last time, or where its gear has turned one pitch."""
+def _followed(scene: GearScene | TrainScene, times: Floats) -> GearScene | TrainScene:
+    """Let a scene end at the last time, or where its gear, or judged shaft, has turned one pitch."""
     return scene.replace(
         {
             "run.duration": float(times[-1]),
-            "run.stop": f"turns {1.0 / scene.gears.gear_teeth!r}",
+            "run.stop": f"turns {_turns(scene)!r}",
             "run.checkpoints": [],
             "run.asperity_events": False,
         }
     )
 
 
+def _turns(scene: GearScene | TrainScene) -> float:
+    """Turns of the gear, of a train of the load's shaft, in which the gear or the judged shaft turns one pitch."""
+    if isinstance(scene, GearScene):
+        return 1.0 / scene.gears.gear_teeth
+    shafts = scene.train.shafts
+    faster = shafts[scene.train.load].ratio / shafts[judged_shaft(scene)].ratio
+    return judged_pitch(scene) / (2.0 * math.pi) * float(faster)
+
+
 def _dataset(scene: Scene, base: Scene, runs: xr.Dataset, times: Floats, confidence: float) -> xr.Dataset:
     reached, longest = runs["reached"].values, float(times[-1])
     stopped = (runs["status"].values == "finished") & (reached < (1.0 - _TO_THE_END) * longest)
-    forward = runs["turned_back"].values < 1.0 - _TO_THE_END  # a pitch backwards ends the run, too
+    # a pitch backwards ends the run, too; that of a train is known where it has been looked at last
+    forward = runs["turned_back"].values < _HALF
     begun = stopped & forward
     start_time = np.where(begun, reached, np.nan)
     followed = np.where(runs["status"].values == "finished", longest, reached)
@@ -191,7 +205,7 @@ def _announced(
     seed: int,
 ) -> str:
     check_design(size, design, seed, indices=False)
-    gears = require_gears(scene)
+    gears = require_meshes(scene)
     return draw_words(_followed(gears, _times(gears, by)), vary, size, workers)
 
 
