@@ -8,10 +8,12 @@ import pickle
 from fractions import Fraction
 from itertools import permutations
 
+import numpy as np
 import pytest
 from tests.reference.trains import SPLIT, chain, compound, split
 
 import gearidae as gd
+from gearidae.errors import SceneError
 from gearidae.scene import GearScene, Scene, TrainScene, dump_case, load_case, preset, require_gears
 from gearidae.scene.gears import disc_inertia
 from gearidae.scene.keys import find_key, scene_value
@@ -480,3 +482,45 @@ def test_most_studies_take_no_several_meshes():
         gd.studies.coating_map(scene)
     with pytest.raises(gd.SceneError, match=r"see scene\.train\.meshes"):
         _ = scene.geometry
+
+
+@pytest.mark.parametrize("tables", [chain(), chain("-130 deg"), split()])
+def test_the_teeth_of_a_gear_have_one_place_in_all_of_its_meshes(tables):
+    """The middle of a tooth lies a quarter of a pitch ahead of its driven flank, and as far behind its driving one."""
+    scene = Scene.from_dict(tables)
+    train, gap = scene.train, float(scene.initial.gap)
+    places = {}
+    for mesh in train.meshes:
+        geometry = mesh.geometry
+        for driven, mount, shaft in ((False, mesh.mounts[0], mesh.a), (True, mesh.mounts[1], mesh.b)):
+            teeth = geometry.gear_teeth if driven else geometry.pinion_teeth
+            back = 0.0 if driven else 0.5 * mesh.mesh.backlash - gap
+            position = mesh.phase - (geometry.approach - back) / geometry.base_pitch - mount.shift
+            turned = (
+                (position + (0.25 if driven else -0.25)) * 2.0 * math.pi / teeth * train.shafts[shaft].sense
+            )
+            place = mesh.angle + math.pi * driven + turned
+            places.setdefault(mount.gear, []).append(place)
+    assert sum(len(found) > 1 for found in places.values()) >= 1
+    for first, *others in places.values():
+        for other in others:
+            # of the mesh that closes a loop the phase is that of its driven gear: a residual of 1e-12 here
+            assert math.remainder(other - first, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_errors_of_teeth_are_drawn_once_for_each_gear():
+    scene = Scene.from_dict(chain()).replace({"mesh.pitch_error_rms": "2 nm", "mesh.pitch_error_seed": 3})
+    first, second = (gd.pitch_errors(scene.pair(name)) for name in ("first", "second"))
+    for gear, drawn in enumerate((first.pinion_pitch_error, first.gear_pitch_error)):
+        expected = np.random.default_rng([3, gear]).standard_normal(drawn.size) * 2e-9 / math.sqrt(2.0)
+        np.testing.assert_allclose(drawn, expected, rtol=1e-15)
+    # the idler drives in the second mesh: a tooth that stands forward opens one gap and closes the other
+    shift = scene.train.mesh("second").mounts[0].shift
+    np.testing.assert_array_equal(second.pinion_pitch_error, -np.roll(first.gear_pitch_error, shift))
+    own = np.random.default_rng([3, 2]).standard_normal(76) * 2e-9 / math.sqrt(2.0)
+    np.testing.assert_allclose(second.gear_pitch_error, own, rtol=1e-15)
+    one = Scene.from_dict(chain()).replace({"meshes.second.pitch_error_rms": "2 nm"})
+    assert not gd.pitch_errors(one.pair("first")).gear_pitch_error.any()
+    with pytest.raises(SceneError, match="jam") as refused:
+        one.replace({"meshes.second.pitch_error_rms": "130 nm"})
+    assert refused.value.key == "meshes.second.pitch_error_rms"

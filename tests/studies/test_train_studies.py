@@ -217,3 +217,40 @@ def test_its_picture_has_a_line_for_each(campbell):
     )
     assert ax.get_xlabel() == "speed of input (rad/s)"
     ax.figure.canvas.draw()
+
+
+DRAWN = {"mesh.pitch_error_rms": "2 nm", "run.duration": "20 us"}
+
+
+def test_members_draw_the_teeth_of_all_gears():
+    scene = Scene.from_dict(chain()).replace(DRAWN)
+    ds = gd.studies.ensemble(scene, {"mesh.pitch_error_seed": "seeds"}, 3, jobs=1, progress=False)
+    for seed in range(3):
+        single = gd.simulate(scene.replace({"mesh.pitch_error_seed": seed}), progress=False)
+        np.testing.assert_array_equal(ds["largest_mesh_force"][seed], single["largest_mesh_force"])
+    assert np.unique(ds["largest_mesh_force"].sel(mesh="second")).size == 3
+    with pytest.raises(gd.SceneError, match="the seed of all meshes"):
+        gd.studies.ensemble(scene, {"meshes.second.pitch_error_seed": "seeds"}, 3, progress=False)
+    with pytest.raises(gd.SceneError, match="nothing is drawn"):
+        gd.studies.ensemble(Scene.from_dict(chain()), {"mesh.pitch_error_seed": "seeds"}, 3, progress=False)
+
+
+def test_gears_of_one_design_start_each_by_itself():
+    """Teeth of Hertz's asperities do not adhere: whatever their errors, hubs and the load alone hold them."""
+    rest = Scene.from_dict(chain(hubs=0.3, load=LOAD)).replace({"meshes.second.pitch_error_rms": "3 nm"})
+    ds = gd.studies.starting_torque(
+        rest, "own", impacts=1, lowest=1e-13, seeds=2, tolerance=0.5, progress=False
+    )
+    assert ds["static_torque"].values == pytest.approx([STARTS], rel=1e-7)
+    assert ds["seed"].values.tolist() == [0, 1]
+    assert ds["starting_torque"].values == pytest.approx(np.full((1, 2), STARTS), rel=1e-7)
+
+
+def test_limits_of_gears_of_one_design_differ_by_their_seeds():
+    rest = Scene.from_dict(chain(hubs=0.3, load=LOAD, initial=REST)).replace(DRAWN)
+    ends = (7.6e-12, 8.6e-12)
+    ds = gd.studies.sticking_threshold(
+        rest, "drive.torque", ends, exits=1, width=5e-13, seeds=2, jobs=1, progress=False
+    )
+    assert ds["seed"].values.tolist() == [0, 1]
+    assert np.isfinite(ds["limit"].values).all()

@@ -21,12 +21,31 @@ _WHOLE: Final = 1e-12
 """A phase this little below a whole pitch is 0: rounding alone keeps it there."""
 
 
+class Mount(NamedTuple):
+    """How a gear stands in one of its meshes.
+
+    Attributes
+    ----------
+    gear : int
+        Number of the gear, from the drive on.
+    shift : int
+        Pair of this mesh that has the tooth which pair 0 of the gear's first mesh has.
+    turned : bool
+        Whether it drives here and is driven there, or the other way.
+    """
+
+    gear: int = 0
+    shift: int = 0
+    turned: bool = False
+
+
 class _Met(NamedTuple):
-    """A gear in the first of its meshes: p, the direction to the other gear [rad], and whether it is driven there."""
+    """A gear in the first of its meshes: p, the direction to the other gear [rad], whether it is driven; its number."""
 
     position: float
     direction: float
     driven: bool
+    number: int
 
 
 def with_phases(
@@ -68,6 +87,7 @@ def with_phases(
     known: dict[str, _Met] = {}
     phases: dict[int, float] = {}
     residuals: dict[int, float] = {}
+    mounts: dict[int, tuple[Mount, Mount]] = {}
     source: dict[str, str] = {}
     left = list(order)
     while left:
@@ -93,10 +113,15 @@ def with_phases(
             phases[number] = _wrapped(follow.get("driven", follow.get("driver", 0.0)))
         if len(follow) == 2:
             residuals[number] = 0.5 - (0.5 - (follow["driven"] - follow["driver"])) % 1.0
-        for side, gear in (("driven", mesh.driven), ("driver", mesh.driver)):
+        for side, gear in (("driver", mesh.driver), ("driven", mesh.driven)):
             direction = mesh.angle + math.pi * (side == "driven")
-            known.setdefault(gear, _Met(phases[number] - _zero(mesh, side, gap), direction, side == "driven"))
+            position = phases[number] - _zero(mesh, side, gap)
+            known.setdefault(gear, _Met(position, direction, side == "driven", len(known)))
             source.setdefault(gear, mesh.name)
+        mounts[number] = (
+            _mount(phases[number], follow.get("driver"), known[mesh.driver], driven=False),
+            _mount(phases[number], follow.get("driven"), known[mesh.driven], driven=True),
+        )
     for number, residual in residuals.items():
         _check_residual(meshes[number], residual)
     return [
@@ -105,6 +130,7 @@ def with_phases(
             phase=phases[number],
             residual=residuals.get(number, 0.0),
             offset=mesh.offset + residuals.get(number, 0.0) * mesh.geometry.base_pitch,
+            mounts=mounts[number],
         )
         for number, mesh in enumerate(meshes)
     ]
@@ -170,6 +196,16 @@ def _follow(mesh: TrainMesh, side: str, gear: _Met, senses: Sequence[int], gap: 
     half = 0.5 * (driven != gear.driven)
     turned = teeth * sense * (gear.direction - direction) / (2.0 * math.pi)
     return gear.position + half + turned + _zero(mesh, side, gap)
+
+
+def _mount(phase: float, follow: float | None, gear: _Met, *, driven: bool) -> Mount:
+    """Find the pair that has the tooth of the gear's first pair: whole pitches lie between what follows and the phase.
+
+    Along the way of a gear its driving flanks lie half a pitch ahead of its driven ones, and not behind them.
+    """
+    ahead = int(driven and not gear.driven)
+    shift = 0 if follow is None else round(phase - (follow - ahead))
+    return Mount(gear.number, shift, driven != gear.driven)
 
 
 def _wrapped(phase: float) -> float:

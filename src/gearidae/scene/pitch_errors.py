@@ -34,7 +34,9 @@ from gearidae.scene.text_table import listed, split_unit
 if TYPE_CHECKING:
     import xarray as xr
 
+    from gearidae.scene.gears import Mesh
     from gearidae.scene.scene import GearScene, Scene
+    from gearidae.scene.train import TrainMesh
 
 SIDES: Final = ("pinion", "gear")
 _MOST_TEETH: Final = 10_000
@@ -105,8 +107,7 @@ def has_pitch_errors(scene: Scene) -> bool:
 def errors_of_teeth(scene: GearScene) -> tuple[Floats, Floats]:
     """Errors of the teeth of the pinion and of the gear [m], listed or drawn; zeros without any.
 
-    Drawn ones are ``numpy.random.default_rng([seed, side]).standard_normal(teeth)``, side 0 for the pinion and 1 for
-    the gear, times ``rms / sqrt(2)``, so that sums of one tooth of each have the rms.
+    Drawn ones are those of `drawn_errors`, side 0 for the pinion and 1 for the gear.
 
     Returns
     -------
@@ -119,10 +120,45 @@ def errors_of_teeth(scene: GearScene) -> tuple[Floats, Floats]:
         if given:
             sides.append(np.array(given))
         elif mesh.pitch_error_rms > 0.0:
-            random = np.random.default_rng([mesh.pitch_error_seed, side])
-            sides.append(random.standard_normal(teeth) * (mesh.pitch_error_rms / math.sqrt(2.0)))
+            sides.append(drawn_errors(mesh, side, teeth))
         else:
             sides.append(np.zeros(teeth))
+    return sides[0], sides[1]
+
+
+def drawn_errors(mesh: Mesh, gear: int, teeth: int) -> Floats:
+    """Errors of the teeth of a gear [m] by the seed of its mesh.
+
+    ``numpy.random.default_rng([seed, gear]).standard_normal(teeth)`` times ``rms / sqrt(2)``, so that sums of one tooth
+    of each of two gears have the rms.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    gear : int
+        0 for the pinion, 1 for the gear; of a train the gears are numbered from the drive on.
+    teeth : int
+    """
+    random = np.random.default_rng([mesh.pitch_error_seed, gear])
+    return np.asarray(random.standard_normal(teeth) * (mesh.pitch_error_rms / math.sqrt(2.0)))
+
+
+def errors_in_train(mesh: TrainMesh) -> tuple[Floats, Floats]:
+    """Errors of the teeth of the driver and of the driven gear of a mesh [m], drawn once for each gear of the train.
+
+    A tooth has one place on its gear. Standing forward opens the gap where its gear is driven, and closes it where its
+    gear drives: there the error has the other sign.
+
+    Returns
+    -------
+    driver, driven : ndarray, shape (teeth,)
+        Of tooth i of pair i.
+    """
+    geometry = mesh.geometry
+    sides = []
+    for mount, teeth in zip(mesh.mounts, (geometry.pinion_teeth, geometry.gear_teeth), strict=True):
+        drawn = np.roll(drawn_errors(mesh.mesh, mount.gear, teeth), mount.shift)
+        sides.append(-drawn if mount.turned else drawn)
     return sides[0], sides[1]
 
 

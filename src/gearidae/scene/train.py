@@ -24,7 +24,7 @@ from gearidae.scene.coating import Coating
 from gearidae.scene.gears import LAW_KEYS, Mesh, disc_inertia
 from gearidae.scene.group import did_you_mean
 from gearidae.scene.named_tables import NamedTables
-from gearidae.scene.phases import with_phases
+from gearidae.scene.phases import Mount, with_phases
 from gearidae.scene.shafts import HUB_KEYS, Meshing, Shaft
 from gearidae.scene.surface import Surface
 
@@ -95,6 +95,8 @@ class TrainMesh:
         Whether it closes a loop; the others are a spanning tree.
     residual : float
         Pitches by which its loop does not close, -1/2 to 1/2.
+    mounts : tuple of Mount
+        Of its driver and of its driven gear.
     """
 
     name: str
@@ -112,6 +114,7 @@ class TrainMesh:
     offset: float
     closes: bool
     residual: float
+    mounts: tuple[Mount, Mount] = (Mount(0), Mount(1))
 
     @property
     def ratio(self) -> Fraction:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 from gearidae.errors import SceneError
 from gearidae.scene.friction import has_flank_friction
 from gearidae.scene.gears import Gears
+from gearidae.scene.pitch_errors import errors_in_train
 from gearidae.scene.shafts import HUB_KEYS
 from gearidae.scene.torque import Drive, Load
 
@@ -42,7 +43,7 @@ def pair_of(scene: TrainScene, name: str) -> GearScene:
                 face_width=mesh.face_width,
                 **hubs,
             ),
-            mesh=mesh.mesh.model_copy(update=_SIZES),
+            mesh=mesh.mesh.model_copy(update=_SIZES | ({} if alone else _teeth(mesh))),
             drive=drive,
             load=load,
             initial=scene.initial.model_copy(update={"mesh_phase": mesh.phase, "gap": _gap(scene, mesh)}),
@@ -54,6 +55,18 @@ def pair_of(scene: TrainScene, name: str) -> GearScene:
     except SceneError as error:
         key = _train_key(mesh, error.key, [*scene.shafts])
         raise SceneError(key, error.value, error.allowed) from error
+
+
+def _teeth(mesh: TrainMesh) -> dict[str, Any]:
+    """Errors of the teeth of a mesh, where they are drawn: one set for each gear of the train, whatever its meshes."""
+    if mesh.mesh.pitch_error_rms == 0.0 or mesh.mesh.pinion_pitch_error or mesh.mesh.gear_pitch_error:
+        return {}
+    driver, driven = errors_in_train(mesh)
+    return {
+        "pitch_error_rms": 0.0,
+        "pinion_pitch_error": tuple(driver.tolist()),
+        "gear_pitch_error": tuple(driven.tolist()),
+    }
 
 
 def _gap(scene: TrainScene, mesh: TrainMesh) -> float:
@@ -102,6 +115,8 @@ def _train_key(mesh: TrainMesh, key: str, names: list[str]) -> str:
     table, _, last = key.partition(".")
     if table in ("coating", "surface"):
         return f"meshes.{mesh.name}.{key}"
+    if mesh.mesh.pitch_error_rms > 0.0 and last in ("pinion_pitch_error", "gear_pitch_error"):
+        last = "pitch_error_rms"
     if table == "gears":
         side, _, rest = last.partition("_")
         if side in ("pinion", "gear") and rest != "base_radius" and rest != "teeth":

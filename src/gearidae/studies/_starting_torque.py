@@ -20,7 +20,7 @@ from gearidae.runs.execution import Execution, RunOptions, prepared
 from gearidae.runs.release import holding_forces
 from gearidae.runs.run_cache import RunCache
 from gearidae.runs.running import FAILS, SomeScene, failure_of, solve_any_to_end, unfinished
-from gearidae.scene import GearScene, TrainScene, is_long_train, require_gears
+from gearidae.scene import GearScene, TrainScene, is_long_train, require_gears, require_meshes
 from gearidae.scene.carried import numbers_of
 from gearidae.scene.joints import ages
 from gearidae.scene.judged import judged_shaft
@@ -57,8 +57,6 @@ log = logging.getLogger(__name__)
 AnyGears: TypeAlias = GearScene | TrainScene
 
 _FRACTIONS = np.round(np.linspace(1.0, 0.4, 13), 4)
-_ALIKE = {"mesh.pitch_error_rms": 0.0}
-"""Teeth without errors."""
 _LOWEST = 1e-3
 """Default lower end of the search, as a part of the scene's torque."""
 _PATIENCE = 3.0
@@ -195,7 +193,7 @@ def starting_torque(
         raise SceneError("tolerance", tolerance, "must lie in 0.001..1")
     base, execution = prepared(scene, options, trains=True)
     if isinstance(base, TrainScene):
-        _refuse_of_train(seeds=seeds, rest_time=rest_time)
+        _refuse_rests_of_train(rest_time)
     rests = None if rest_time is None else _rests(base, rest_time, sam_fraction)
     if rests is not None:
         points, scenes = rests, [base.replace({"initial.rest_time": time}) for time in rests]
@@ -212,11 +210,10 @@ def starting_torque(
     if seeds is not None:
         if rests is not None or not simulated:
             raise SceneError("seeds", seeds, "is for simulated torques over the coating: leave it out here")
-        pairs = [require_gears(variant) for variant in scenes]
         return _torques_of_gears(
             scene,
-            require_gears(base),
-            (points, pairs),
+            require_meshes(base),
+            (points, [require_meshes(variant) for variant in scenes]),
             seeds,
             _lowest(scene, lowest),
             impacts,
@@ -241,8 +238,8 @@ def starting_torque(
 
 def _torques_of_gears(
     scene: Scene,
-    base: GearScene,
-    coatings: tuple[list[float], list[GearScene]],
+    base: AnyGears,
+    coatings: tuple[list[float], list[AnyGears]],
     seeds: int,
     lowest: float,
     impacts: int,
@@ -254,13 +251,12 @@ def _torques_of_gears(
 
     def work(kept: RunCache | None) -> xr.Dataset:
         static = [
-            static_starting_torque(variant.replace(_ALIKE), impacts=impacts, lowest=lowest)
-            for variant in scenes
+            static_starting_torque(_alike(variant), impacts=impacts, lowest=lowest) for variant in scenes
         ]
         searches = [
-            _Search(at, impacts, lowest, torque, pitch_of(at))
+            _search_from(variant.replace(gear), impacts, lowest, torque)
             for variant, torque in zip(scenes, static, strict=True)
-            for at in map(variant.replace, gears)
+            for gear in gears
         ]
         _search_all(searches, tolerance, execution, kept)
         shape = (len(points), len(gears))
@@ -298,6 +294,20 @@ def _torques_of_gears(
     return TEETH.compute(execution, base, work, settings, origin=scene)
 
 
+def _alike(scene: AnyGears) -> AnyGears:
+    """Return a scene whose teeth have no errors that are drawn."""
+    own = [] if isinstance(scene, GearScene) else [*scene.meshes]
+    return scene.replace(
+        dict.fromkeys(("mesh.pitch_error_rms", *(f"meshes.{name}.pitch_error_rms" for name in own)), 0.0)
+    )
+
+
+def _search_from(scene: AnyGears, impacts: int, lowest: float, static: float) -> _Search:
+    """Begin the search of one gear's torque at that of teeth alike."""
+    pitch = pitch_of(scene) if isinstance(scene, GearScene) else pitch_of_train(scene)
+    return _Search(scene, impacts, lowest, static, pitch)
+
+
 def _rests(base: Scene, rest_time: ArrayLike, sam_fraction: ArrayLike | None) -> list[float]:
     """Read times at rest, and refuse what does not go with them."""
     if sam_fraction is not None and not (isinstance(sam_fraction, str) and sam_fraction == "own"):
@@ -312,16 +322,11 @@ def _rests(base: Scene, rest_time: ArrayLike, sam_fraction: ArrayLike | None) ->
     return [float(time) for time in np.atleast_1d(times)]
 
 
-def _refuse_of_train(**settings: Any) -> None:
-    """Refuse settings that the starting torque of a train does not have."""
-    reasons = {
-        "seeds": "nothing of its teeth is drawn by them",
-        "rest_time": "friction of its joints does not age",
-    }
-    for name, value in settings.items():
-        if value is not None:
-            allowed = f"must be left out of a train of several meshes: {reasons[name]}"
-            raise SceneError(name, value, allowed)
+def _refuse_rests_of_train(rest_time: ArrayLike | None) -> None:
+    """Refuse times at rest, which no joint of a train remembers."""
+    if rest_time is not None:
+        allowed = "must be left out of a train of several meshes: friction of its joints does not age"
+        raise SceneError("rest_time", rest_time, allowed)
 
 
 def _refuse_settings(**settings: Any) -> None:

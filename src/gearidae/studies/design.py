@@ -157,7 +157,16 @@ def drawn_distributions(scene: Scene, vary: Mapping[str, Any]) -> tuple[Distribu
         If a key is none of a number, what is given is no distribution, a seed is given one, or the scene draws nothing
         by a seed.
     """
-    if not isinstance(vary, Mapping) or not any(key in vary for key in SEED_KEYS):
+    if not isinstance(vary, Mapping):
+        return read_distributions(scene, vary)
+    for key, text in vary.items():
+        if text == SEEDS and key.startswith("meshes.") and key.endswith(".pitch_error_seed"):
+            allowed = (
+                "must be mesh.pitch_error_seed, the seed of all meshes; meshes.NAME.pitch_error_rms chooses those "
+                "that are drawn"
+            )
+            raise SceneError("vary", key, allowed)
+    if not any(key in vary for key in SEED_KEYS):
         return read_distributions(scene, vary)
     drawing = seeds_that_draw(scene)
     for key, allowed in NEEDS.items():

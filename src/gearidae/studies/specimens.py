@@ -7,10 +7,12 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, Final
 
 from gearidae.errors import SceneError
+from gearidae.scene import require_meshes
 from gearidae.scene.quantity import whole
 
 if TYPE_CHECKING:
     from gearidae.scene import Scene
+    from gearidae.scene.train import TrainMesh
 
 MOST_SEEDS: Final = 10_000
 POPULATION: Final = "contact.seed"
@@ -28,12 +30,16 @@ def gears_text(count: int) -> str:
 
 
 def seeds_that_draw(scene: Scene) -> tuple[str, ...]:
-    """Keys of seeds by which something is drawn: a population, errors of teeth."""
+    """Keys of seeds by which something is drawn: a population, errors of teeth, of a train in any of its meshes."""
     draws = {
         POPULATION: scene.contact.is_discrete,
-        TEETH: scene.mesh is not None and scene.mesh.pitch_error_rms > 0.0,
+        TEETH: any(mesh.mesh.pitch_error_rms > 0.0 for mesh in _meshes(scene)),
     }
     return tuple(key for key, is_drawn in draws.items() if is_drawn)
+
+
+def _meshes(scene: Scene) -> Sequence[TrainMesh]:
+    return () if scene.roller is not None else require_meshes(scene).train.meshes
 
 
 def seed_of(scene: Scene) -> int:
