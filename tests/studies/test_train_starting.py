@@ -173,8 +173,11 @@ def test_what_has_no_closed_form_is_refused():
     with pytest.raises(gd.SceneError, match=r"meshes = \(loop .*a loop shares its load"):
         gd.studies.starting_torque(gd.Scene.from_dict(split()))
     scene = gd.Scene.from_dict(chain())
-    for option in ({"seeds": 3}, {"rest_time": [1.0]}):
-        with pytest.raises(gd.SceneError, match="must be left out of a train"):
+    for option, words in (
+        ({"seeds": 3}, "mesh.pitch_error_rms above 0"),
+        ({"rest_time": [1.0]}, "must be left out of a train"),
+    ):
+        with pytest.raises(gd.SceneError, match=words):
             gd.studies.starting_torque(scene, **option)
 
 
