@@ -30,7 +30,8 @@ def still(scene, since=0.0, place=0.0):
     speed, angle = 2.0 * place / max(since, 1e-30) * share, place * (1.0 - share**2)
     samples = {
         **{name: np.zeros((count, time.size)) for name in ("hub_load", "hub_load_angle")},
-        **{name: np.zeros(time.size) for name in ("load_torque", "pin_load")},
+        **{name: np.zeros(time.size) for name in ("load_torque", "pin_load", "pin_friction")},
+        "hub_friction": np.array([np.full(time.size, shaft.hub_friction) for shaft in scene.shafts.values()]),
         **{
             name: np.zeros((meshes, time.size))
             for name in ("mesh_force", "transmission_error", "drive_gap", "coast_gap", "pairs_in_contact")

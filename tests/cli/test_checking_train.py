@@ -43,6 +43,29 @@ def test_check_prints_each_mesh_and_hub(case, capfd):
         assert expected in out
 
 
+def test_check_says_how_hubs_age(case, capfd):
+    tables = chain(hubs=0.2)
+    for shaft in tables["shafts"].values():
+        shaft |= {"hub_friction_rise": 0.1, "hub_ageing_time": "1 ms", "hub_memory_length": "50 nm"}
+    tables["initial"]["rest_time"] = "1 s"
+    assert main(["check", case(tables)]) == 0
+    out = words(capfd)
+    assert "ageing of the hub of idler 50 um/s below this sliding speed, 12.5 rad/s of its shaft" in out
+    assert "after a long rest friction takes 6.355e-13 N m" in out  # as with 0.3, see above
+    assert (
+        "starting torque 8.0046985e-12 N m of the drive: dry resistances and hubs, without the teeth; after 1 s"
+        in out
+    )
+
+
+def test_check_warns_of_ages_of_nothing(case, capfd):
+    settings = ["initial.rest_time=1 s", "shafts.idler.hub_ageing_time=1 ms"]
+    assert main(["check", case(chain(hubs=0.3)), "--set", *settings]) == 0
+    out = words(capfd)
+    for key in ("initial.rest_time = 1 s", "shafts.idler.hub_ageing_time = 1 ms"):
+        assert f"{key} has no effect without hub_friction_rise of a shaft" in out
+
+
 def test_check_takes_keys_of_meshes(case, capfd):
     assert main(["check", case(split()), "--set", "meshes.two.offset=3 nm"]) == 0
     assert "load of output shared three 73.83 %, four 26.17 %" in words(capfd)

@@ -46,6 +46,7 @@ def solved(scene, samples=1501):
         "shaft_angle": turned,
         "hub_load": column["hub"],
         "hub_load_angle": 0.0 * column["hub"],
+        "hub_friction": np.array([np.full(time.size, shaft.hub_friction) for shaft in shafts]),
         "mesh_force": force,
         "transmission_error": column["u"],
         "drive_gap": half - column["u"],
@@ -54,6 +55,7 @@ def solved(scene, samples=1501):
         "drive_torque": drive,
         "load_torque": load.torque + load.drag * last**2,
         "pin_load": 0.0 * drive,
+        "pin_friction": 0.0 * drive,
     }
     return TrainSolution(
         shafts=tuple(scene.shafts),

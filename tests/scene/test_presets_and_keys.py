@@ -38,8 +38,8 @@ CONTRACT = {
 }
 
 SHAFT = (
-    "inertia density teeth gears gears.NAME hub_friction hub_radius hub_adhesion axial_load dimple_radius resistance "
-    "viscous drag"
+    "inertia density teeth gears gears.NAME hub_friction hub_friction_rise hub_ageing_time hub_memory_length "
+    "hub_radius hub_adhesion axial_load dimple_radius resistance viscous drag"
 )
 MESH = "driver driven angle phase offset coating surface"
 

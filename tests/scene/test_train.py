@@ -16,6 +16,7 @@ import gearidae as gd
 from gearidae.errors import SceneError
 from gearidae.scene import GearScene, Scene, TrainScene, dump_case, load_case, preset, require_gears
 from gearidae.scene.gears import disc_inertia
+from gearidae.scene.joints import joints
 from gearidae.scene.keys import find_key, scene_value
 
 
@@ -443,25 +444,113 @@ def test_a_pair_has_shafts_meshes_and_a_train():
     [
         ({"gear_spring": 1e-13}, "gear_spring"),
         ({"pinion_spring": 1e-12, "pinion_spring_damping": 1e-18}, "pinion_spring"),
-        (
-            {
-                "hub_friction_rise": 0.1,
-                "hub_ageing_time": 1e-3,
-                "hub_memory_length": 5e-8,
-                "gear_hub_radius": 6e-6,
-            },
-            "hub_friction_rise",
-        ),
     ],
 )
 def test_what_shafts_of_a_train_lack_is_not_lost(keys, refused):
-    """Springs and ageing are keys of a pair alone."""
+    """Springs are keys of a pair alone."""
     scene = short(**{f"gears.{key}": value for key, value in keys.items()})
     for table in ("shafts", "train"):
         with pytest.raises(
             gd.SceneError, match=rf"^gears\.{refused} = .*: must be 0 where a pair is to be a train"
         ):
             getattr(scene, table)
+
+
+ENGINE = {
+    "drive.law": {
+        "name": "microengine",
+        "radius": "10 um",
+        "force": "10 uN",
+        "frequency": "600 Hz",
+        "phase": 1.4,
+    }
+}
+HUBS_THAT_AGE = {
+    "hub_friction": 0.2,
+    "hub_friction_rise": 0.1,
+    "hub_ageing_time": 1e-3,
+    "hub_memory_length": 5e-8,
+}
+
+
+def test_hubs_of_a_pair_age_in_a_train_too():
+    keys = {f"gears.{key}": value for key, value in (HUBS_THAT_AGE | {"gear_hub_radius": 6e-6}).items()}
+    scene = short(**keys)
+    there = scene.shafts["gear"].hub_of("gear")
+    assert (there.rise, there.ageing_time, there.memory_length) == (0.1, 1e-3, 5e-8)
+    assert scene.shafts["pinion"].hub_friction_rise == 0.0  # it has no hub
+
+
+@pytest.mark.parametrize(
+    ("changes", "key", "allowed"),
+    [
+        (
+            {"shafts.idler.hub_ageing_time": None},
+            "shafts.idler.hub_ageing_time",
+            "is required with shafts.idler",
+        ),
+        (
+            {"shafts.idler.hub_memory_length": None},
+            "shafts.idler.hub_memory_length",
+            "is required with shafts",
+        ),
+        (
+            {"shafts.idler.hub_radius": 0.0, "shafts.idler.hub_friction": 0.0},
+            "shafts.idler.hub_radius",
+            "_rise",
+        ),
+        ({"shafts.idler.hub_friction_rise": 6.0}, "shafts.idler.hub_friction_rise", "must lie in 0..5"),
+        ({"drive.pin_radius": "1 um"}, "drive.pin_radius", "a couple has no pin"),
+        ({"drive.orientation": 0.3}, "drive.orientation", "a couple has no pin"),
+        ({**ENGINE, "drive.pin_friction_rise": 0.2}, "drive.pin_radius", "must be above 0"),
+        (
+            {**ENGINE, "drive.pin_radius": "1 um", "drive.pin_friction": 0.1, "drive.pin_friction_rise": 0.2},
+            "drive.pin_ageing_time",
+            "is required with drive.pin_friction_rise",
+        ),
+        (
+            {**ENGINE, "shafts.input.hub_friction": 2.0, "shafts.input.hub_radius": "6 um"},
+            "drive.pin_radius",
+            "must be below drive.law.radius",
+        ),
+        ({"load.law": ENGINE["drive.law"]}, "load.law.name", "has a force, which only a drive has"),
+    ],
+)
+def test_joints_of_a_train_are_checked_as_those_of_a_pair(changes, key, allowed):
+    idler = {f"shafts.idler.{key}": value for key, value in (HUBS_THAT_AGE | {"hub_radius": 4e-6}).items()}
+    scene = scene_of(chain()).replace(idler)
+    with pytest.raises(gd.SceneError, match=allowed) as caught:
+        scene.replace(changes)
+    assert caught.value.key == key
+
+
+def test_a_pin_ages_as_the_hub_of_its_shaft():
+    scene = scene_of(chain()).replace(ENGINE | {"drive.pin_radius": "1 um"})
+    pin = {joint.name: joint for joint in joints(scene)}["pin"]
+    assert (pin.coefficient, pin.rise) == (0.0, 0.0)
+    hub = {f"shafts.input.{key}": value for key, value in (HUBS_THAT_AGE | {"hub_radius": 3e-6}).items()}
+    both = {joint.name: joint for joint in joints(scene.replace(hub))}
+    assert [*both] == ["hub of input", "pin"]
+    for name in ("coefficient", "rise", "ageing_time", "memory_length"):
+        assert getattr(both["pin"], name) == getattr(both["hub of input"], name)
+    own = {joint.name: joint for joint in joints(scene.replace(hub | {"drive.pin_friction": 0.4}))}
+    assert (own["pin"].coefficient, own["pin"].rise) == (0.4, 0.0)
+
+
+def test_hubs_of_a_train_of_one_mesh_age_alike():
+    tables = chain()
+    tables["shafts"].pop("output")
+    tables["meshes"].pop("second")
+    for shaft in tables["shafts"].values():
+        shaft |= {**HUBS_THAT_AGE, "hub_radius": 3e-6}
+    scene = scene_of(tables)
+    pair = scene.pair("first")
+    assert (pair.gears.hub_friction_rise, pair.gears.hub_ageing_time) == (0.1, 1e-3)
+    with pytest.raises(
+        gd.SceneError, match=r"that of the other shaft, 0\.1, in a train of one mesh"
+    ) as caught:
+        scene.replace({"shafts.idler.hub_friction_rise": 0.2})
+    assert caught.value.key == "shafts.idler.hub_friction_rise"
 
 
 def test_stages_are_pairs_with_their_own_tables():

@@ -175,7 +175,7 @@ def test_what_has_no_closed_form_is_refused():
     scene = gd.Scene.from_dict(chain())
     for option, words in (
         ({"seeds": 3}, "mesh.pitch_error_rms above 0"),
-        ({"rest_time": [1.0]}, "must be left out of a train"),
+        ({"rest_time": [1.0]}, "needs friction that ages"),
     ):
         with pytest.raises(gd.SceneError, match=words):
             gd.studies.starting_torque(scene, **option)

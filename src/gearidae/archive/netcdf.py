@@ -34,7 +34,13 @@ from gearidae.archive.row_variables import kinds_in, needed
 from gearidae.archive.select import is_train
 from gearidae.archive.target import as_path, whole_file
 from gearidae.archive.time_index import LARGEST_IN_MEMORY, in_memory, with_times
-from gearidae.archive.train.variables import COORDINATES, MESH_TOTALS, SHAFT_TOTALS, TRAIN_SAMPLES
+from gearidae.archive.train.variables import (
+    COORDINATES,
+    MESH_TOTALS,
+    OF_AGEING,
+    SHAFT_TOTALS,
+    TRAIN_SAMPLES,
+)
 from gearidae.archive.unfinished import RunJournal
 from gearidae.archive.variables import ENERGY_BALANCE, OF_SWEPT_RUN
 from gearidae.errors import SceneError
@@ -262,7 +268,8 @@ def _expected(ds: xr.Dataset, scene: dict[str, Any]) -> tuple[str, ...]:
     rows = tuple(name for kind in kinds_in(ds) for name in needed(kind))  # a user may drop them
     always: tuple[str, ...] = ()
     if is_train(ds):
-        sampled, rows, always = tuple(TRAIN_SAMPLES), (*SHAFT_TOTALS, *MESH_TOTALS, *rows), tuple(COORDINATES)
+        sampled = tuple(name for name in TRAIN_SAMPLES if name not in OF_AGEING)
+        rows, always = (*SHAFT_TOTALS, *MESH_TOTALS, *rows), tuple(COORDINATES)
     if "keep" not in ds.attrs:
         return (*always, "time", *sampled, *rows)
     try:

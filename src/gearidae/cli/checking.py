@@ -22,7 +22,7 @@ from gearidae.runs.run_time import run_time
 from gearidae.runs.validity import validity_rows
 from gearidae.scene import GearScene, TrainScene, require_gears
 from gearidae.scene.friction import has_flank_friction
-from gearidae.scene.joints import has_joint_friction, has_pin, joints
+from gearidae.scene.joints import Joint, has_joint_friction, has_pin, joints
 from gearidae.scene.sampled import columns_of
 from gearidae.scene.validity_row import contact_subject, mean_note
 
@@ -173,10 +173,7 @@ def _friction(scene: GearScene) -> Facts:
         words = f"friction takes {joint.torque(load):.4g} N m of its shaft, {where}"
         yield Fact(f"load of the {joint.name}", f"{load * 1e6:.4g} uN", words, load, "N")
         if joint.rise > 0.0:
-            speed, after = joint.chatter_speed, joint.of_age(math.inf).torque(load)
-            turning = f"below this sliding speed, {speed / joint.sliding_radius:.4g} rad/s of its shaft, it may chatter"
-            words = f"{turning}; after a long rest friction takes {after:.4g} N m"
-            yield Fact(f"ageing of the {joint.name}", f"{speed * 1e6:.4g} um/s", words, speed, "m s-1")
+            yield ageing_fact(joint, load)
     if has_pin(scene):
         return
     lost = 1.0 - hub_share(geometry, 1.0, hub_arms(sliding(scene, steady_speed(scene))))
@@ -188,6 +185,15 @@ def _friction(scene: GearScene) -> Facts:
     if there != joints(scene):
         words += f"; after {scene.initial.rest_time:g} s of rest"
     yield Fact("starting torque", f"{start:.4g} N m", words, start, "N m")
+
+
+def ageing_fact(joint: Joint, load: float | None) -> Fact:
+    """Say below which speed a joint that ages may chatter, and what friction takes of a load [N] after a long rest."""
+    speed = joint.chatter_speed
+    words = f"below this sliding speed, {speed / joint.sliding_radius:.4g} rad/s of its shaft, it may chatter"
+    if load is not None:
+        words += f"; after a long rest friction takes {joint.of_age(math.inf).torque(load):.4g} N m"
+    return Fact(f"ageing of the {joint.name}", f"{speed * 1e6:.4g} um/s", words, speed, "m s-1")
 
 
 def _roller(scene: Scene) -> Facts:

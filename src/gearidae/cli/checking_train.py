@@ -7,17 +7,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gearidae.cli.checking import ageing_fact
 from gearidae.cli.fact import Fact, Facts
 from gearidae.mesh.pair_contact import pair_contact
 from gearidae.mesh.train_modes import natural_frequencies
 from gearidae.runs.rubbing import flank_loss
 from gearidae.runs.train_statics import (
     hub_loads,
+    hubs_at_rest,
     mesh_forces,
     overlapping,
     starting_torque,
     steady_speed,
 )
+from gearidae.scene.joints import ages, train_pin
 from gearidae.scene.train_pair import rubbing_mesh
 
 if TYPE_CHECKING:
@@ -109,7 +112,7 @@ def _hubs(scene: TrainScene, forces: Floats) -> Facts:
     """Loads of the hubs, and the torque that starts the train against them."""
     vectors = hub_loads(scene.train, forces)
     for (name, shaft), vector in zip(scene.shafts.items(), vectors, strict=True):
-        if (hub := shaft.hub) is None:
+        if (hub := shaft.hub_of(name)) is None:
             continue
         load, angle = math.hypot(*vector), math.atan2(vector[1], vector[0])
         words = "without the force of the law"
@@ -117,7 +120,12 @@ def _hubs(scene: TrainScene, forces: Floats) -> Facts:
             words = f"friction takes {hub.torque(load):.4g} N m"
         text = f"{load * 1e6:.4g} uN at {math.degrees(angle):.4g} deg"
         yield Fact(f"load of the hub of {name}", text, words, load, "N")
-    if not any(shaft.hub_friction for shaft in scene.shafts.values()) or scene.drive.law is not None:
+        if hub.rise > 0.0:
+            yield ageing_fact(hub, load if scene.drive.law is None else None)
+    if (pin := train_pin(scene)).rise * pin.radius > 0.0:
+        yield ageing_fact(pin, None)
+    there = hubs_at_rest(scene)
+    if not any(hub is not None and hub.largest > 0.0 for hub in there) or scene.drive.law is not None:
         return
     torque, starting = starting_torque(scene)
     if math.isinf(torque):
@@ -131,6 +139,8 @@ def _hubs(scene: TrainScene, forces: Floats) -> Facts:
         yield Fact("starting torque", "unknown", "what friction of flanks holds is not unique")
     else:
         words = "of the drive: dry resistances and hubs, without the teeth"
+        if ages(scene):
+            words += f"; after {scene.initial.rest_time:g} s of rest"
         yield Fact("starting torque", f"{torque:.8g} N m", words, torque, "N m")
 
 

@@ -18,12 +18,13 @@ from gearidae.records.extremes import Extremes
 from gearidae.records.results import Solution, Words
 from gearidae.records.statistics import Statistics
 
-SHAFT_SAMPLES: Final = ("shaft_speed", "shaft_angle", "hub_load", "hub_load_angle")
-"""Samples of each shaft, shape (shafts, n): [rad/s], [rad], [N], and the load's angle in the frame [rad]."""
+SHAFT_SAMPLES: Final = ("shaft_speed", "shaft_angle", "hub_load", "hub_load_angle", "hub_friction")
+"""Samples of each shaft, shape (shafts, n): [rad/s], [rad], [N], the load's angle in the frame [rad], and the
+coefficient of friction of the hub [1]."""
 MESH_SAMPLES: Final = ("mesh_force", "transmission_error", "drive_gap", "coast_gap", "pairs_in_contact")
 """Samples of each mesh, shape (meshes, n): the force with the damping of the mesh [N], lengths [m], and a count."""
-COMMON_SAMPLES: Final = ("drive_torque", "load_torque", "pin_load")
-"""Samples of the train, shape (n,): [N m], [N m] and [N]."""
+COMMON_SAMPLES: Final = ("drive_torque", "load_torque", "pin_load", "pin_friction")
+"""Samples of the train, shape (n,): [N m], [N m], [N] and the coefficient of friction of the pin [1]."""
 WORKS_OF_SHAFTS: Final = ("hub_loss", "hub_sliding", "resistance_loss", "drag_loss")
 WORKS_OF_MESHES: Final = (
     "adhesion_loss",

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 from gearidae.laws.pairs import MESH_LAWS, has_mesh_law, number_of_mesh
 from gearidae.scene import TrainScene
 from gearidae.scene.gears import DISC_FACTOR, SILICON, disc_inertia
-from gearidae.scene.joints import joints
+from gearidae.scene.joints import HubFriction, joints
 from gearidae.scene.prefixes import with_prefix
 from gearidae.torques import torque_law
 
@@ -41,7 +41,8 @@ def doubts(scene: Scene) -> list[str]:
         Sentences, each with the key and the numbers; empty for most scenes.
     """
     if isinstance(scene, TrainScene):
-        return [f"mesh {name}: {line}" for name in scene.meshes for line in _sizes(scene.pair(name))]
+        lines = [f"mesh {name}: {line}" for name in scene.meshes for line in _sizes(scene.pair(name))]
+        return lines + _idle_ageing(scene)
     parts = (_sizes, _resistance, _bodies, _path_force, _idle, _inertias, _laws)
     return [line for part in parts for line in part(scene)]
 
@@ -196,8 +197,8 @@ def _idle_laws(scene: Scene) -> list[str]:
 
 def _idle_ageing(scene: Scene) -> list[str]:
     """Name times that nothing ages by, and memory lengths far from the size of contacts."""
-    gears, drive, start, there = scene.gears, scene.drive, scene.initial, joints(scene)
-    if gears is None or drive is None or start is None:
+    drive, start, there = scene.drive, scene.initial, joints(scene)
+    if drive is None or start is None:
         return []
     lines = [
         f"{joint.name}: a memory length of {with_prefix(joint.memory_length, 'm')} is unusual: measured ones are some"
@@ -207,15 +208,22 @@ def _idle_ageing(scene: Scene) -> list[str]:
     ]
     if any(joint.rise > 0.0 for joint in there):
         return lines
+    rise = "hub_friction_rise of a shaft" if isinstance(scene, TrainScene) else "gears.hub_friction_rise"
+    hubs: dict[str, HubFriction] = {"gears": scene.gears} if scene.gears is not None else {}
+    if isinstance(scene, TrainScene):
+        hubs = {f"shafts.{name}": shaft for name, shaft in scene.shafts.items()}
     values = {
-        "gears.hub_ageing_time": (gears.hub_ageing_time, "s"),
-        "gears.hub_memory_length": (gears.hub_memory_length, "m"),
+        f"{table}.hub_{key}": (getattr(keys, f"hub_{key}"), unit)
+        for table, keys in hubs.items()
+        for key, unit in (("ageing_time", "s"), ("memory_length", "m"))
+    }
+    values |= {
         "drive.pin_ageing_time": (drive.pin_ageing_time, "s"),
         "drive.pin_memory_length": (drive.pin_memory_length, "m"),
         "initial.rest_time": (start.rest_time, "s"),
     }
     return [
-        f"{key} = {with_prefix(value, unit)} has no effect without gears.hub_friction_rise"
+        f"{key} = {with_prefix(value, unit)} has no effect without {rise}"
         for key, (value, unit) in values.items()
         if value
     ]

@@ -24,7 +24,13 @@ import numpy as np
 
 from gearidae.arrays import Floats
 from gearidae.runs.release import LeavingPair, largest
-from gearidae.runs.train_statics import balancing_forces, line_of_action, resistances, starting_torque
+from gearidae.runs.train_statics import (
+    balancing_forces,
+    hubs_at_rest,
+    line_of_action,
+    resistances,
+    starting_torque,
+)
 from gearidae.scene import TrainScene
 
 _MOST_EXITS: Final = 400
@@ -80,7 +86,7 @@ class TrainRelease:
         self._scene, self._train, self._impacts = scene, scene.train, impacts
         self._pairs = [LeavingPair(scene.pair(mesh.name)) for mesh in self._train.meshes]
         self._path = self._way_to_the_load()
-        self._hubs = [shaft.hub for shaft in scene.shafts.values()]
+        self._hubs = hubs_at_rest(scene)
         self._beside = [k for k in range(len(self._train.meshes)) if k not in self._path]
         self._carried = starting_torque(scene)[1]
         self._groups = list(self._grouped(self._windows()))

@@ -24,6 +24,7 @@ from gearidae.mesh.pair_contact import PairContact, pair_contact
 from gearidae.mesh.train_modes import levers
 from gearidae.runs.estimates import TURNS_NOTHING, mean_over_run
 from gearidae.scene import GearScene, TrainScene
+from gearidae.scene.joints import Joint
 from gearidae.scene.judged import judged_pitch, judged_shaft
 from gearidae.scene.train import Train, TrainMesh
 
@@ -212,6 +213,12 @@ def line_of_action(train: Train, mesh: TrainMesh) -> Floats:
     return np.array([cosine * across - sine * along, sine * across + cosine * along])
 
 
+def hubs_at_rest(scene: TrainScene) -> list[Joint | None]:
+    """Hubs of all shafts with the friction that they have after ``initial.rest_time``, None of a shaft without one."""
+    hubs = [shaft.hub_of(name) for name, shaft in scene.shafts.items()]
+    return [None if hub is None else hub.of_age(scene.initial.rest_time) for hub in hubs]
+
+
 def hub_loads(train: Train, forces: Floats) -> Floats:
     """Vectors of what the meshes push on each shaft with, shape (shafts, 2) [N]."""
     loads = np.zeros((len(train.shafts), 2))
@@ -275,10 +282,9 @@ def _limit(
     forces = np.full(len(train.meshes), math.nan)
     if train.loops:
         return math.nan, forces
-    dry = resistances(scene)[0]
-    shafts = list(scene.shafts.values())
+    dry, there = resistances(scene)[0], hubs_at_rest(scene)
     for number in reversed(_outwards(train)):
-        hub = shafts[number].hub if hubs is None or number in hubs else None
+        hub = there[number] if hubs is None or number in hubs else None
         driven = [k for k, mesh in enumerate(train.meshes) if mesh.a == number]
         pushed = sum((forces[k] * line_of_action(train, train.meshes[k]) for k in driven), np.zeros(2))
         constant = dry[number] + way * (0.0 if hub is None else hub.torque(0.0))

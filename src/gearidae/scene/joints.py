@@ -1,11 +1,12 @@
-"""Joints of a gear pair: both hubs, and the pin of a drive that pushes; what follows from them starts here."""
+"""Joints of gears: the hubs of all shafts, and the pin of a drive that pushes; what follows from them starts here."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass, replace
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from gearidae.errors import SceneError
 from gearidae.records.standing import Holding
@@ -13,7 +14,7 @@ from gearidae.torques import torque_law
 
 if TYPE_CHECKING:
     from gearidae.scene.gears import Gears
-    from gearidae.scene.scene import GearScene, Scene
+    from gearidae.scene.scene import GearScene, Scene, TrainScene
     from gearidae.scene.torque import Drive
 
 
@@ -24,7 +25,7 @@ class Joint:
     Attributes
     ----------
     name : str
-        "pinion hub", "gear hub" or "pin".
+        "pinion hub", "gear hub" or "pin"; of a train "hub of SHAFT" or "pin".
     coefficient : float
         Of friction of fresh contacts, which slide [1].
     radius : float
@@ -120,38 +121,65 @@ def pushes(drive: Drive) -> bool:
     return drive.law is not None and torque_law(drive.law.name).has_force
 
 
+class HubFriction(Protocol):
+    """Keys of the friction of a hub, which the gears of a pair have for both, and each shaft of a train has."""
+
+    hub_friction: float
+    hub_friction_rise: float
+    hub_ageing_time: float | None
+    hub_memory_length: float | None
+
+
 def joints(scene: Scene) -> tuple[Joint, ...]:
     """List the joints of a scene that have a radius, or an axial load on dimples; none of a roller."""
-    if scene.gears is None or scene.drive is None:
+    if scene.drive is None:
         return ()
-    return _joints_of(scene.gears, scene.drive)
+    if scene.gears is not None:
+        return _joints_of(scene.gears, scene.drive)
+    if scene.shafts is None:
+        return ()
+    hubs = [shaft.hub_of(name) for name, shaft in scene.shafts.items()]
+    return _there(*(hub for hub in hubs if hub is not None), train_pin(scene))
 
 
 @lru_cache(maxsize=64)
 def _joints_of(gears: Gears, drive: Drive) -> tuple[Joint, ...]:
-    hubs = (_hub(gears, "pinion"), _hub(gears, "gear"))
-    every = (*hubs, _pin(gears, drive))
+    return _there(_hub(gears, "pinion"), _hub(gears, "gear"), _pin(gears, drive))
+
+
+def _there(*every: Joint) -> tuple[Joint, ...]:
     return tuple(
         joint for joint in every if joint.radius > 0.0 or joint.dimple_radius * joint.axial_load > 0.0
     )
 
 
+def train_pin(scene: Scene) -> Joint:
+    """Pin of the drive of a train, on the shaft that it drives."""
+    assert scene.shafts is not None
+    assert scene.drive is not None
+    return _pin(scene.shafts[scene.train.shafts[scene.train.drive].name], scene.drive)
+
+
 def _hub(gears: Gears, shaft: str) -> Joint:
     keys = {name: getattr(gears, f"{shaft}_{key}") for name, key in _HUB_KEYS.items()}
-    ageing = _ageing(gears.hub_friction_rise, gears.hub_ageing_time, gears.hub_memory_length)
-    return Joint(f"{shaft} hub", gears.hub_friction, **keys, **ageing)
+    return Joint(f"{shaft} hub", gears.hub_friction, **keys, **ageing_of(gears))
 
 
-def _pin(gears: Gears, drive: Drive) -> Joint:
+def _pin(hubs: HubFriction, drive: Drive) -> Joint:
     """Pin with the friction of the hubs, or with its own, which does not grow unless it says so."""
     coefficient, rise = drive.pin_friction, drive.pin_friction_rise
     if rise is None:
-        rise = gears.hub_friction_rise if coefficient is None else 0.0
-    times = drive.pin_ageing_time, gears.hub_ageing_time
-    lengths = drive.pin_memory_length, gears.hub_memory_length
+        rise = hubs.hub_friction_rise if coefficient is None else 0.0
+    times = drive.pin_ageing_time, hubs.hub_ageing_time
+    lengths = drive.pin_memory_length, hubs.hub_memory_length
     ageing = _ageing(rise, *(first if first is not None else second for first, second in (times, lengths)))
-    coefficient = gears.hub_friction if coefficient is None else coefficient
+    coefficient = hubs.hub_friction if coefficient is None else coefficient
     return Joint("pin", coefficient, drive.pin_radius, **ageing)
+
+
+def ageing_of(hubs: HubFriction) -> dict[str, float]:
+    """What a hub ages by."""
+    return _ageing(hubs.hub_friction_rise, hubs.hub_ageing_time, hubs.hub_memory_length)
 
 
 def _ageing(rise: float, time: float | None, length: float | None) -> dict[str, float]:
@@ -189,7 +217,8 @@ def check_joints(scene: GearScene) -> None:
         Naming the key.
     """
     _check_pin(scene)
-    _check_ageing(scene)
+    _check_ageing("gears", scene.gears)
+    _check_pin_ageing(scene.drive, scene.gears)
     gears, there = scene.gears, {joint.name: joint for joint in joints(scene)}
     for shaft in ("pinion", "gear"):
         for load, radius in (("hub_adhesion", "hub_radius"), ("axial_load", "dimple_radius")):
@@ -209,10 +238,27 @@ def check_joints(scene: GearScene) -> None:
             limit = base / hub.largest
             reason = f"must be below {limit:.4g} m: the hub locks the {shaft} from there on"
             raise SceneError(f"gears.{shaft}_hub_radius", hub.radius, reason)
-    _check_circle(scene, there)
+    _check_circle(scene, [joint for name, joint in there.items() if name != "gear hub"])
 
 
-def _check_pin(scene: GearScene) -> None:
+def check_train_joints(scene: TrainScene) -> None:
+    """Refuse joints of a train without what they need, and a pin that locks the shaft of the drive.
+
+    Raises
+    ------
+    SceneError
+        Naming the key.
+    """
+    _check_pin(scene)
+    for name, shaft in scene.shafts.items():
+        _check_ageing(f"shafts.{name}", shaft)
+    name = scene.train.shafts[scene.train.drive].name
+    _check_pin_ageing(scene.drive, scene.shafts[name])
+    hub, pin = scene.shafts[name].hub_of(name), train_pin(scene)
+    _check_circle(scene, [pin] if hub is None else [hub, pin])
+
+
+def _check_pin(scene: GearScene | TrainScene) -> None:
     """Refuse keys of a pin without a law that has a force, and a load with one."""
     drive, load = scene.drive, scene.load
     if load.law is not None and torque_law(load.law.name).has_force:
@@ -222,7 +268,7 @@ def _check_pin(scene: GearScene) -> None:
     values = {
         "orientation": drive.orientation,
         "pin_radius": drive.pin_radius,
-        **{key: getattr(drive, key) for key in _PIN_FRICTION},
+        **{key: getattr(drive, key) for key in PIN_KEYS},
     }
     for key, value in values.items():
         if value and not pushes(drive):
@@ -231,47 +277,47 @@ def _check_pin(scene: GearScene) -> None:
                 value,
                 "needs a torque law that has a force, as microengine: a couple has no pin",
             )
-    for key in _PIN_FRICTION:
+    for key in PIN_KEYS:
         if getattr(drive, key) and drive.pin_radius == 0.0:
             raise SceneError("drive.pin_radius", 0.0, f"must be above 0 with drive.{key}")
 
 
-_PIN_FRICTION = ("pin_friction", "pin_friction_rise", "pin_ageing_time", "pin_memory_length")
+PIN_KEYS = ("pin_friction", "pin_friction_rise", "pin_ageing_time", "pin_memory_length")
 """Keys of the friction of a pin."""
 
 
-def _check_ageing(scene: GearScene) -> None:
-    """Refuse a rise of friction without a time and a length."""
-    gears, drive = scene.gears, scene.drive
-    hub, pin = (
-        (gears.hub_ageing_time, gears.hub_memory_length),
-        (drive.pin_ageing_time, drive.pin_memory_length),
-    )
-    rises = (
-        ("gears.hub", gears.hub_friction_rise, hub),
-        (
-            "drive.pin",
-            drive.pin_friction_rise,
-            tuple(own or other for own, other in zip(pin, hub, strict=True)),
-        ),
-    )
-    for key, rise, values in rises:
-        for name, value in zip(("ageing_time", "memory_length"), values, strict=True):
-            if rise and value is None:
-                raise SceneError(f"{key}_{name}", "(missing)", f"is required with {key}_friction_rise")
+def _check_ageing(table: str, hubs: HubFriction) -> None:
+    """Refuse a rise of the friction of hubs, whose keys stand in a table, without a time and a length."""
+    _require_ageing(f"{table}.hub", hubs.hub_friction_rise, hubs.hub_ageing_time, hubs.hub_memory_length)
 
 
-def _check_circle(scene: Scene, there: dict[str, Joint]) -> None:
-    """Refuse a pin whose force can never turn the pinion; laws name the radius of the pin's circle ``radius``."""
+def _check_pin_ageing(drive: Drive, hubs: HubFriction) -> None:
+    """Refuse a rise of a pin's friction without a time and a length, which are those of hubs where it has none."""
+    time, length = drive.pin_ageing_time, drive.pin_memory_length
+    _require_ageing(
+        "drive.pin",
+        drive.pin_friction_rise,
+        time or hubs.hub_ageing_time,
+        length or hubs.hub_memory_length,
+    )
+
+
+def _require_ageing(joint: str, rise: float | None, time: float | None, length: float | None) -> None:
+    for name, value in (("ageing_time", time), ("memory_length", length)):
+        if rise and value is None:
+            raise SceneError(f"{joint}_{name}", "(missing)", f"is required with {joint}_friction_rise")
+
+
+def _check_circle(scene: GearScene | TrainScene, there: Sequence[Joint]) -> None:
+    """Refuse a pin whose force can never turn its shaft; laws name the radius of the pin's circle ``radius``."""
     drive = scene.drive
-    circle = (
-        (drive.law.model_extra or {}).get("radius") if drive is not None and drive.law is not None else None
-    )
-    taken = sum(joint.largest * joint.radius for name, joint in there.items() if name != "gear hub")
+    circle = None if drive.law is None else (drive.law.model_extra or {}).get("radius")
+    taken = sum(joint.largest * joint.radius for joint in there)
     if has_pin(scene) and isinstance(circle, float) and taken >= circle:
+        whose = "pinion's" if scene.gears is not None else "driven shaft's"
         raise SceneError(
             "drive.pin_radius",
-            there["pin"].radius if "pin" in there else 0.0,
-            f"friction of the pinion's hub and of the pin takes {taken:.4g} m of the force's arm, which must be below"
+            drive.pin_radius,
+            f"friction of the {whose} hub and of the pin takes {taken:.4g} m of the force's arm, which must be below"
             f" drive.law.radius = {circle:.4g} m",
         )

@@ -10,14 +10,21 @@ from gearidae.errors import SceneError
 from gearidae.scene.coating import Coating
 from gearidae.scene.gears import HubRadius, JointForce, Mesh, Teeth
 from gearidae.scene.group import Group, shorten
-from gearidae.scene.joints import Joint
+from gearidae.scene.joints import HubFriction, Joint, ageing_of
 from gearidae.scene.knots import Resistance
 from gearidae.scene.named_tables import NamedTables
 from gearidae.scene.quantity import Count, Quantity
-from gearidae.scene.surface import Friction, Surface
+from gearidae.scene.surface import AgeingTime, Friction, FrictionRise, MemoryLength, Surface
 
 HUB_KEYS: Final = ("hub_radius", "hub_adhesion", "axial_load", "dimple_radius")
 """Keys of the hub of a shaft that a pair has for its pinion and its gear."""
+FRICTION_KEYS: Final = ("hub_friction", "hub_friction_rise", "hub_ageing_time", "hub_memory_length")
+"""Keys of the friction of a hub that a pair has for both."""
+
+
+def friction_of(hubs: HubFriction) -> dict[str, Any]:
+    """Keys of the friction of a hub that are given."""
+    return {key: value for key in FRICTION_KEYS if (value := getattr(hubs, key)) is not None}
 
 
 class Shaft(Group):
@@ -36,7 +43,19 @@ class Shaft(Group):
         default=None,
         description="teeth of several gears by their names, in place of teeth; a mesh names them SHAFT.GEAR",
     )
-    hub_friction: Friction = Field(default=0.0, description="coefficient of friction of its hub")
+    hub_friction: Friction = Field(
+        default=0.0, description="coefficient of friction of its hub; with a rise, of fresh contacts"
+    )
+    hub_friction_rise: FrictionRise = Field(
+        default=0.0, description="by how much that coefficient grows with time at rest, towards a long one"
+    )
+    hub_ageing_time: AgeingTime = Field(
+        default=None, description="time at rest of 63 % of the rise; needed with one"
+    )
+    hub_memory_length: MemoryLength = Field(
+        default=None,
+        description="way of the hub's surface on which the rise is forgotten, some 20 to 100 nm; needed with one",
+    )
     hub_radius: HubRadius = Field(default=0.0, description="radius of its hub, 0 for one without friction")
     hub_adhesion: JointForce = Field(
         default=0.0, description="adhesion of its hub, which its friction takes for a load"
@@ -63,22 +82,23 @@ class Shaft(Group):
         for load, radius in (("hub_adhesion", "hub_radius"), ("axial_load", "dimple_radius")):
             if getattr(self, load) > 0.0 and getattr(self, radius) == 0.0:
                 raise SceneError(radius, 0.0, f"must be above 0 with {load}")
-        if self.hub_friction > 0.0 and self.hub_radius == 0.0 and self.dimple_radius == 0.0:
-            raise SceneError("hub_radius", 0.0, "a hub or a dimple must have a radius with hub_friction")
+        for key in ("hub_friction", "hub_friction_rise"):
+            if getattr(self, key) > 0.0 and self.hub_radius == 0.0 and self.dimple_radius == 0.0:
+                raise SceneError("hub_radius", 0.0, f"a hub or a dimple must have a radius with {key}")
         return self
 
-    @property
-    def hub(self) -> Joint | None:
-        """Its hub; None of a shaft without a radius at which a hub or dimples slide."""
+    def hub_of(self, name: str) -> Joint | None:
+        """Return its hub, of a shaft of this name; None without a radius at which a hub or dimples slide."""
         if self.hub_radius == 0.0 and self.dimple_radius == 0.0:
             return None
         return Joint(
-            "hub",
+            f"hub of {name}",
             self.hub_friction,
             self.hub_radius,
             adhesion=self.hub_adhesion,
             axial_load=self.axial_load,
             dimple_radius=self.dimple_radius,
+            **ageing_of(self),
         )
 
     def gear_teeth(self, name: str) -> dict[str, int]:

@@ -25,7 +25,7 @@ from gearidae.scene.gears import LAW_KEYS, Mesh, disc_inertia
 from gearidae.scene.group import did_you_mean
 from gearidae.scene.named_tables import NamedTables
 from gearidae.scene.phases import Mount, with_phases
-from gearidae.scene.shafts import HUB_KEYS, Meshing, Shaft
+from gearidae.scene.shafts import HUB_KEYS, Meshing, Shaft, friction_of
 from gearidae.scene.surface import Surface
 
 if TYPE_CHECKING:
@@ -169,7 +169,7 @@ def pair_shafts(gears: Gears) -> NamedTables[Shaft]:
     SceneError
         If the pair has what the shafts of a train have no keys for.
     """
-    for key in _OF_PAIRS:
+    for key in LAW_KEYS:
         if (value := getattr(gears, key)) > 0.0:
             reason = "must be 0 where a pair is to be a train, whose shafts have no such key"
             raise SceneError(f"gears.{key}", value, reason)
@@ -177,7 +177,7 @@ def pair_shafts(gears: Gears) -> NamedTables[Shaft]:
         name: Shaft(
             inertia=getattr(gears, f"{name}_inertia"),
             teeth=getattr(gears, f"{name}_teeth"),
-            hub_friction=gears.hub_friction if _has_joint(gears, name) else 0.0,
+            **(friction_of(gears) if _has_joint(gears, name) else {}),
             **{key: getattr(gears, f"{name}_{key}") for key in HUB_KEYS},
         )
         for name in ("pinion", "gear")
@@ -194,10 +194,6 @@ def pair_meshes(gears: Gears, mesh: Mesh) -> NamedTables[Meshing]:
     }
     own: dict[str, Any] = {key: value for key, value in mesh if value is not None} | sizes
     return NamedTables({"mesh": Meshing(driver="pinion", driven="gear", **own)})
-
-
-_OF_PAIRS: Final = ("hub_friction_rise", *LAW_KEYS)
-"""Keys of a pair that act on its shafts, and that a train does not have."""
 
 
 def _has_joint(gears: Gears, shaft: str) -> bool:

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Any, Final
 from gearidae.errors import SceneError
 from gearidae.scene.friction import has_flank_friction
 from gearidae.scene.gears import Gears
+from gearidae.scene.group import shorten
+from gearidae.scene.joints import check_train_joints
 from gearidae.scene.pitch_errors import errors_in_train
-from gearidae.scene.shafts import HUB_KEYS
+from gearidae.scene.shafts import FRICTION_KEYS, HUB_KEYS, friction_of
 from gearidae.scene.torque import Drive, Load
 
 if TYPE_CHECKING:
@@ -77,20 +79,21 @@ def _gap(scene: TrainScene, mesh: TrainMesh) -> float:
 
 
 def _hubs(scene: TrainScene, mesh: TrainMesh) -> dict[str, Any]:
-    """Keys of both hubs; a pair has one coefficient of friction for both."""
+    """Keys of both hubs; a pair has one friction for both."""
     names = [*scene.shafts]
     keys: dict[str, Any] = {}
-    coefficients = {}
+    frictions: dict[str, dict[str, Any]] = {}
     for side, number in (("pinion", mesh.a), ("gear", mesh.b)):
         shaft = scene.shafts[names[number]]
         keys |= {f"{side}_{key}": getattr(shaft, key) for key in HUB_KEYS}
-        if shaft.hub is not None:
-            coefficients[names[number]] = shaft.hub_friction
-    if len(set(coefficients.values())) > 1:
-        name = names[mesh.b]
-        reason = f"must be that of the other shaft, {coefficients[names[mesh.a]]:g}, in a train of one mesh"
-        raise SceneError(f"shafts.{name}.hub_friction", coefficients[name], reason)
-    return keys | {"hub_friction": next(iter(coefficients.values()), 0.0)}
+        if shaft.hub_of(names[number]) is not None:
+            frictions[names[number]] = friction_of(shaft)
+    for key in FRICTION_KEYS if len(frictions) > 1 else ():
+        first, second = (frictions[names[number]].get(key) for number in (mesh.a, mesh.b))
+        if first != second:
+            reason = f"must be that of the other shaft, {shorten(first)}, in a train of one mesh"
+            raise SceneError(f"shafts.{names[mesh.b]}.{key}", shorten(second), reason)
+    return keys | next(iter(frictions.values()), {})
 
 
 def _torques(scene: TrainScene, mesh: TrainMesh) -> tuple[Drive, Load]:
@@ -143,6 +146,7 @@ def check_train(scene: TrainScene) -> None:
     pairs = [pair_of(scene, mesh.name) for mesh in scene.train.meshes]
     if len(pairs) == 1:
         return
+    check_train_joints(scene)
     contact, run = scene.contact, scene.run
     refused: list[tuple[bool, str, Any, str]] = [
         (

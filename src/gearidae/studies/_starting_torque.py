@@ -192,8 +192,6 @@ def starting_torque(
     if not 0.001 <= tolerance <= 1.0:
         raise SceneError("tolerance", tolerance, "must lie in 0.001..1")
     base, execution = prepared(scene, options, trains=True)
-    if isinstance(base, TrainScene):
-        _refuse_rests_of_train(rest_time)
     rests = None if rest_time is None else _rests(base, rest_time, sam_fraction)
     if rests is not None:
         points, scenes = rests, [base.replace({"initial.rest_time": time}) for time in rests]
@@ -320,13 +318,6 @@ def _rests(base: Scene, rest_time: ArrayLike, sam_fraction: ArrayLike | None) ->
     except ValueError as error:
         raise SceneError("rest_time", rest_time, str(error)) from None
     return [float(time) for time in np.atleast_1d(times)]
-
-
-def _refuse_rests_of_train(rest_time: ArrayLike | None) -> None:
-    """Refuse times at rest, which no joint of a train remembers."""
-    if rest_time is not None:
-        allowed = "must be left out of a train of several meshes: friction of its joints does not age"
-        raise SceneError("rest_time", rest_time, allowed)
 
 
 def _refuse_settings(**settings: Any) -> None:

@@ -14,7 +14,7 @@ import numpy as np
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.runs.train_release import TrainRelease
-from gearidae.runs.train_statics import ratios, resistances, starting_torque
+from gearidae.runs.train_statics import hubs_at_rest, ratios, resistances, starting_torque
 from gearidae.scene.judged import judged_shaft
 from gearidae.scene.train_pair import rubbing_mesh
 from gearidae.studies.bracket import crossing
@@ -95,7 +95,7 @@ def pitch_of_train(scene: TrainScene) -> Pitch:
 
 def part_names(scene: TrainScene) -> list[str]:
     """Names of the parts of a train that take its starting torque, in the order in which they are added up."""
-    hubs = [name for name, shaft in scene.shafts.items() if shaft.hub is not None]
+    hubs = [name for name, hub in zip(scene.shafts, hubs_at_rest(scene), strict=True) if hub is not None]
     return [
         "dry resistance",
         *(f"adhesion of {name}" for name in scene.meshes),
@@ -112,7 +112,7 @@ def train_parts(scene: TrainScene, held: Sequence[float] | Floats) -> Floats:
         Torque at the drive that each part adds to those before it [N m]; the sum is the starting torque.
     """
     count, forces = len(scene.meshes), np.asarray(held, dtype=np.float64)
-    hubs = [number for number, shaft in enumerate(scene.shafts.values()) if shaft.hub is not None]
+    hubs = [number for number, hub in enumerate(hubs_at_rest(scene)) if hub is not None]
     sums = [starting_torque(scene, forces * (np.arange(count) < k), hubs=())[0] for k in range(count + 1)]
     sums += [starting_torque(scene, forces, hubs=hubs[:k])[0] for k in range(1, len(hubs) + 1)]
     return np.diff(np.array(sums), prepend=0.0)

@@ -71,6 +71,19 @@ FEATURES = {
     "jkr": {"contact.asperity": "jkr", **ADHERING},
     "dmt": {"contact.asperity": "dmt", **ADHERING},
     "maugis": {"contact.asperity": "maugis", **ADHERING},
+    "humid air": {
+        **ADHERING,
+        "contact.asperity": "meniscus",
+        "surface.humidity": 0.8,
+        "surface.bridged": 0.5,
+        "surface.temperature": "320 K",
+    },
+    "humid air in one mesh": {
+        **ADHERING,
+        "contact.asperity": "meniscus",
+        "meshes.first.surface.humidity": 0.9,
+        "meshes.first.surface.bridged": 0.7,
+    },
     "attraction": {"surface.hamaker": 1e-19},
     "independent coatings": {"contact.asperity": "jkr", **ADHERING, "coating.pairing": "independent"},
     "coating by place": {"contact.asperity": "jkr", **ADHERING, "meshes.first.coating.pinion_table": TABLE},
@@ -321,7 +334,6 @@ def test_a_wheel_that_stands_back_in_a_reduction_does_so_but_for_the_phase():
         ("run.stop", "sticks"),
         ("run.impacts", True),
         ("run.checkpoints", [1e-5]),
-        ("initial.rest_time", 1.0),
     ],
 )
 def test_what_a_train_does_not_do_is_refused(key, value):

@@ -299,7 +299,8 @@ def _holders(
         if end >= motion.end
     }
     for number, (name, shaft) in enumerate(scene.shafts.items()):
-        if number in at_rest and shaft.hub is not None and shaft.hub.torque(1.0) > 0.0:
+        hub = shaft.hub_of(name)
+        if number in at_rest and hub is not None and hub.holding:
             holding |= Holding.HUB_FRICTION
             held.append(f"hub friction of {name}")
     for number in solution.flanks_held:
@@ -316,7 +317,7 @@ def _adhering(scene: TrainScene, solution: TrainSolution) -> list[str]:
     train, track = scene.train, solution.track
     late = track.time >= solution.start + RUN_PARTS[2] * (solution.reached - solution.start)
     forces = track.samples["mesh_force"][:, late].mean(axis=1)
-    loads = track.samples["hub_load"][:, late].mean(axis=1)
+    loads, frictions = (track.samples[name][:, late].mean(axis=1) for name in ("hub_load", "hub_friction"))
     missing = []
     for number, (name, shaft) in enumerate(scene.shafts.items()):
         mine = [k for k, mesh in enumerate(train.meshes) if mesh.b == number]
@@ -328,7 +329,10 @@ def _adhering(scene: TrainScene, solution: TrainSolution) -> list[str]:
             for k, mesh in enumerate(train.meshes)
             if mesh.a == number
         )
-        limit = shaft.resistance + (0.0 if shaft.hub is None else shaft.hub.torque(float(loads[number])))
+        hub = shaft.hub_of(name)
+        limit = shaft.resistance
+        if hub is not None:
+            limit += replace(hub, coefficient=float(frictions[number])).torque(float(loads[number]))
         limit += scene.load.torque if name == train.shafts[train.load].name else 0.0
         if arrives - leaves - limit > _NOT_PASSED_ON * abs(arrives):
             missing += [train.meshes[k].name for k in mine]

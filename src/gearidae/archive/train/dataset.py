@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Hashable
+from collections.abc import Hashable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,6 +20,7 @@ from gearidae.archive.train.variables import (
     ENERGY,
     EVENT_PLACES,
     MESH_TOTALS,
+    OF_AGEING,
     OF_JUDGED,
     REST_LIST,
     SHAFT_TOTALS,
@@ -38,6 +39,7 @@ from gearidae.archive.variables import (
     run_label,
 )
 from gearidae.records import Extremes
+from gearidae.scene.joints import ages
 from gearidae.scene.judged import judged_mesh, judged_shaft
 
 if TYPE_CHECKING:
@@ -68,12 +70,14 @@ def train_dataset(
         and extremes of the judged shaft without a dimension; events with their mesh and shaft. Everything in SI units.
     """
     extremes = solution.extremes or Extremes()
+    sampled = [name for name in TRAIN_SAMPLES if name in solution.samples]
+    if not ages(scene):
+        sampled = [name for name in sampled if name not in OF_AGEING]
     variables: dict[Hashable, Any] = {
-        name: (variable.dims, solution.samples[name], variable.attributes)
-        for name, variable in TRAIN_SAMPLES.items()
-        if name in solution.samples
+        name: (TRAIN_SAMPLES[name].dims, solution.samples[name], TRAIN_SAMPLES[name].attributes)
+        for name in sampled
     }
-    variables |= _two_shafts(scene, solution)
+    variables |= _two_shafts(scene, solution, sampled)
     variables |= _events(scene, solution)
     for catalogue, totals in ((SHAFT_TOTALS, solution.shaft_totals), (MESH_TOTALS, solution.mesh_totals)):
         for name, variable in catalogue.items():
@@ -132,13 +136,13 @@ def coordinates(train: Train, judged: int) -> dict[str, Any]:
     }
 
 
-def _two_shafts(scene: TrainScene, solution: TrainSolution) -> dict[Hashable, Any]:
+def _two_shafts(scene: TrainScene, solution: TrainSolution, sampled: Sequence[str]) -> dict[Hashable, Any]:
     """Samples by the names that a pair has: of the judged shaft, and of the drive's."""
     numbers = {"gear": judged_shaft(scene), "pinion": scene.train.drive}
     return {
         name: (("time",), solution.samples[source][numbers[name.partition("_")[0]]], SAMPLES[name].attributes)
         for name, source in TWO_SHAFTS.items()
-        if source in solution.samples
+        if source in sampled
     }
 
 

@@ -25,6 +25,7 @@ COORDINATES: Final[Mapping[str, Variable]] = {
     )
 }
 _FORWARD = "positive in the forward sense of each shaft"
+_OF_INSTANT = SAMPLES["gear_hub_friction"].comment
 TRAIN_SAMPLES: Final[Mapping[str, Variable]] = {
     variable.name: variable
     for variable in (
@@ -44,23 +45,33 @@ TRAIN_SAMPLES: Final[Mapping[str, Variable]] = {
             "direction of the load of the hub",
             comment="counter-clockwise from the frame's x axis",
         ),
+        Variable(
+            "hub_friction", (*SHAFT, "time"), "1", "coefficient of friction of the hub", comment=_OF_INSTANT
+        ),
         *(
             Variable(name, (*MESH, "time"), SAMPLES[name].units, SAMPLES[name].long_name)
             for name in ("mesh_force", "transmission_error", "drive_gap", "coast_gap", "pairs_in_contact")
         ),
         *(
             Variable(name, ("time",), SAMPLES[name].units, SAMPLES[name].long_name)
-            for name in ("drive_torque", "load_torque", "pin_load")
+            for name in ("drive_torque", "load_torque", "pin_load", "pin_friction")
         ),
     )
 }
 TWO_SHAFTS: Final[Mapping[str, str]] = {
     f"{side}_{name}": source
     for side in ("gear", "pinion")
-    for name, source in (("speed", "shaft_speed"), ("angle", "shaft_angle"), ("hub_load", "hub_load"))
+    for name, source in (
+        ("speed", "shaft_speed"),
+        ("angle", "shaft_angle"),
+        ("hub_load", "hub_load"),
+        ("hub_friction", "hub_friction"),
+    )
 }
 """Samples by the names that a pair has, ``gear`` for the judged shaft and ``pinion`` for the drive's, and those of all
 shafts that they are taken from."""
+OF_AGEING: Final = ("hub_friction", "pin_friction")
+"""Samples that a dataset has only where friction of a joint ages."""
 SHAFT_TOTALS: Final[Mapping[str, Variable]] = {
     name: Variable(name, SHAFT, units, meaning)
     for name, units, meaning in (

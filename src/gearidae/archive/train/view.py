@@ -6,7 +6,7 @@ import xarray as xr
 
 from gearidae.archive.select import is_train, run_scene
 from gearidae.archive.train.dataset import coordinates
-from gearidae.archive.train.variables import COORDINATES, MESH_TOTALS, SHAFT_TOTALS, TRAIN_SAMPLES
+from gearidae.archive.train.variables import COORDINATES, MESH_TOTALS, SHAFT_TOTALS, TRAIN_SAMPLES, TWO_SHAFTS
 from gearidae.archive.train.work import MESH_LOSSES
 from gearidae.archive.variables import ENERGY_BALANCE
 from gearidae.errors import SceneError
@@ -16,6 +16,7 @@ _OF_SHAFTS = {
     "shaft_speed": ("pinion_speed", "gear_speed"),
     "shaft_angle": ("pinion_angle", "gear_angle"),
     "hub_load": ("pinion_hub_load", "gear_hub_load"),
+    "hub_friction": ("pinion_hub_friction", "gear_hub_friction"),
     "hub_loss": ("pinion_hub_loss", "gear_hub_loss"),
     "hub_sliding": ("pinion_hub_sliding", "gear_hub_sliding"),
 }
@@ -85,7 +86,7 @@ def train_form(ds: xr.Dataset) -> xr.Dataset:
             made[name] = ds[name].expand_dims(mesh=1)
     catalogue = {**TRAIN_SAMPLES, **SHAFT_TOTALS, **MESH_TOTALS}
     old = {side for sides in _OF_SHAFTS.values() for side in sides if side in ds}
-    two = {name for name in old if not name.endswith(("speed", "angle", "hub_load"))}
+    two = {name for name in old if name not in TWO_SHAFTS}
     view = ds.drop_vars([*two, *(name for name in _OF_MESHES if name in ds)]).assign(made)
     for name in made:
         if name in catalogue:

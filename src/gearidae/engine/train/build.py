@@ -27,7 +27,7 @@ from gearidae.engine.train.start import begin_train
 from gearidae.errors import SceneError
 from gearidae.records import first_sample
 from gearidae.scene import Drive, GearScene, Load
-from gearidae.scene.joints import pushes
+from gearidae.scene.joints import PIN_KEYS, Joint, pushes, train_pin
 from gearidae.scene.judged import judged_shaft
 from gearidae.scene.pitch_errors import error_on_path
 from gearidae.scene.scene import TrainScene
@@ -107,10 +107,8 @@ def _refuse(scene: TrainScene, train: Train) -> None:
     """Refuse what a train cannot be run with yet."""
     if all(mesh.b != train.load for mesh in train.meshes):
         raise SceneError("load.shaft", train.shafts[train.load].name, "must be a shaft that a mesh drives")
-    drive, initial, run = scene.drive, scene.initial, scene.run
+    run = scene.run
     refused = (
-        (initial.rest_time > 0.0, "initial.rest_time", "friction of its joints does not age"),
-        (bool(drive.pin_friction_rise), "drive.pin_friction_rise", "friction of its joints does not age"),
         (run.stop == "sticks", "run.stop", "each of its shafts may stick"),
         (run.impacts, "run.impacts", "impacts are a table of one mesh"),
         (
@@ -142,6 +140,9 @@ def _ends(train: Train) -> tuple[int, int]:
     return drive, load
 
 
+_NO_PIN: Final = dict.fromkeys(PIN_KEYS)
+
+
 def _pairs(scene: TrainScene, train: Train, start: Start) -> tuple[list[GearScene], tuple[Problem, ...]]:
     """Every mesh as a pair of gears: the first at the drive with its torques, the first at the load with those.
 
@@ -149,9 +150,8 @@ def _pairs(scene: TrainScene, train: Train, start: Start) -> tuple[list[GearScen
     would hand it on.
     """
     first, last = _ends(train)
-    drive = scene.drive.model_copy(
-        update={"shaft": None, "orientation": 0.0, "pin_radius": 0.0, "pin_friction": None}
-    )
+    # the pin is the train's
+    drive = scene.drive.model_copy(update={"shaft": None, "orientation": 0.0, "pin_radius": 0.0, **_NO_PIN})
     load = scene.load.model_copy(update={"shaft": None})
     shares = [float(train.shafts[mesh.a].ratio / train.shafts[train.drive].ratio) for mesh in train.meshes]
     pairs, problems = {}, {}
@@ -241,12 +241,21 @@ def _add_shafts(tm: TrainModel, scene: TrainScene, train: Train) -> None:
         record["inertia"], record["ratio"] = laid.inertia, float(_turns(train, number))
         for key in ("resistance", "viscous", "drag", "hub_radius"):
             record[key] = getattr(shaft, key)
-        hub = shaft.hub
+        hub = shaft.hub_of(laid.name)
         if hub is not None:
             record["hub_arm"], record["hub_torque"] = hub.arm, hub.torque(0.0)
-        record["rubs"] = int(
-            record["resistance"] > 0.0 or record["hub_arm"] > 0.0 or record["hub_torque"] > 0.0
-        )
+            _add_joint(tm.joints[number], hub, number, scene)
+        record["rubs"] = int(record["resistance"] > 0.0 or (hub is not None and bool(hub.holding)))
+
+
+def _add_joint(record: Record, joint: Joint, shaft: int, scene: TrainScene) -> None:
+    """Set the constants of a hub or the pin, and its age after the rest before the start."""
+    record["shaft"], record["radius"], record["hold"] = shaft, joint.radius, joint.holding_torque
+    record["fresh"], record["rise"] = joint.coefficient, joint.rise
+    record["age"], record["friction"] = scene.initial.rest_time, joint.aged(scene.initial.rest_time)
+    if joint.rise > 0.0:
+        record["ageing_rate"] = 1.0 / joint.ageing_time
+        record["forgetting"] = joint.sliding_radius / joint.memory_length
 
 
 def _add_train(
@@ -264,11 +273,10 @@ def _add_train(
             math.cos(drive.orientation),
             math.sin(drive.orientation),
         )
-        coefficient = drive.pin_friction
-        if coefficient is None:
-            coefficient = scene.shafts[train.shafts[train.drive].name].hub_friction
-        record.pin_arm = coefficient * drive.pin_radius
-        if record.pin_arm > 0.0:
+        pin = train_pin(scene)
+        record.pin_arm = pin.arm
+        _add_joint(tm.joints[-1], pin, train.drive, scene)
+        if pin.holding:
             tm.shafts[train.drive]["rubs"] = 1
     teeth = _teeth_at(train, train.load)
     record.per_radian = teeth / (2.0 * math.pi)
@@ -278,7 +286,10 @@ def _add_train(
     # histories go round: each keeps its place where all slots have gone by
     slots = max(int(problem.model.scene.slots) for problem in problems)
     record.period = whole * slots * math.ceil(TURNS_LOW / (whole * slots))
-    record.flanks, record.hubs = int(tm.meshes["flanks"].any()), int(tm.shafts["hub_arm"].any())
+    hubs = [shaft.hub_of(name) for name, shaft in scene.shafts.items()]
+    record.flanks = int(tm.meshes["flanks"].any())
+    record.hubs = int(any(hub is not None and hub.largest * hub.radius > 0.0 for hub in hubs))
+    record.ages = int(tm.joints["rise"].any())
     record.balance, record.samples = int(run.balance), run.sample_count
     record.start, record.end = start, start + run.duration
     record.first_sample = first_sample(start, start + run.duration, run.sample_count)

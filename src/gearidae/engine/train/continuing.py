@@ -33,6 +33,7 @@ from gearidae.scene.scene import TrainScene
 _OF_TRAIN: Final = ("whole_pitches", "time", "step", "throughput", "peak_kinetic", "kinetic", "last_root")
 _OF_SHAFT: Final = ("begin", "slip", "rest_begin", "rest_time", "min_speed", "max_speed")
 _OF_MESH: Final = ("largest", "largest_time", "smallest", "smallest_time", "separation")
+_OF_JOINT: Final = ("age",)
 """Numbers of the records that a run carries on, with those that a run after it carries on, too."""
 _COUNTS: Final = (
     "roots",
@@ -47,7 +48,7 @@ _COUNTS: Final = (
 )
 """Numbers of one run of the train."""
 _LAYOUT: Final = int(
-    hashlib.sha256(repr((_OF_TRAIN, _OF_SHAFT, _OF_MESH, _COUNTS)).encode()).hexdigest()[:8], 16
+    hashlib.sha256(repr((_OF_TRAIN, _OF_SHAFT, _OF_MESH, _OF_JOINT, _COUNTS)).encode()).hexdigest()[:8], 16
 )
 _HEADER: Final = 5
 """Words in front: layout, and four of the scene."""
@@ -59,6 +60,7 @@ def pack_train(problem: TrainProblem) -> Words:
     numbers = [tm.train[0][name] for name in (*_OF_TRAIN, *_COUNTS)]
     numbers += [record[name] for record in tm.shafts for name in _OF_SHAFT]
     numbers += [record[name] for record in tm.meshes for name in _OF_MESH]
+    numbers += [record[name] for record in tm.joints for name in _OF_JOINT]
     own = np.array([*numbers, *tm.y, *problem.energies, problem.kinetic], dtype=np.float64)
     parts: list[Floats] = [np.array([_LAYOUT, *problem.digest]), own]
     for k, pair in enumerate(problem.problems):
@@ -90,7 +92,8 @@ def restore_train(problem: TrainProblem, words: Words) -> None:
         raise refused("its layout", "of another version of gearidae; run the scene again")
     if tuple(words[1:_HEADER]) != problem.digest:
         raise refused("its scene", "not of this scene")
-    counts = len(_OF_TRAIN) + len(_COUNTS), len(_OF_SHAFT) * len(tm.shafts), len(_OF_MESH) * len(tm.meshes)
+    tables = ((tm.shafts, _OF_SHAFT), (tm.meshes, _OF_MESH), (tm.joints, _OF_JOINT))
+    counts = len(_OF_TRAIN) + len(_COUNTS), *(len(names) * len(records) for records, names in tables)
     sizes = (*counts, tm.y.size, problem.energies.size, 1)
     begin = _HEADER + sum(sizes)
     meshes = list(_meshes_of(problem, words, begin))
@@ -98,7 +101,7 @@ def restore_train(problem: TrainProblem, words: Words) -> None:
     parts = np.split(words[_HEADER:begin].copy(), np.cumsum(sizes)[:-1])
     for part in parts:
         require(bool(np.isfinite(part).all()), "the state", "finite")
-    of_train, of_shafts, of_meshes, y, energies, kinetic = parts
+    of_train, of_shafts, of_meshes, of_joints, y, energies, kinetic = parts
     whole = of_train[len(_OF_TRAIN) :]
     require(bool(((whole >= 0) & (whole < COUNT_HIGH) & (whole % 1.0 == 0.0)).all()), "counters", "counts")
     require(bool(np.isin(of_shafts[1 :: len(_OF_SHAFT)], (-1.0, 0.0, 1.0)).all()), "slip", "-1, 0 or 1")
@@ -106,7 +109,8 @@ def restore_train(problem: TrainProblem, words: Words) -> None:
         pair.restore(mine, np.empty(tm.own.size))
     for name, value in zip((*_OF_TRAIN, *_COUNTS), of_train, strict=True):
         tm.train[0][name] = value
-    for records, names, values in ((tm.shafts, _OF_SHAFT, of_shafts), (tm.meshes, _OF_MESH, of_meshes)):
+    require(bool((of_joints >= 0.0).all()), "age", "0 or more")
+    for (records, names), values in zip(tables, (of_shafts, of_meshes, of_joints), strict=True):
         for record, numbers in zip(records, values.reshape(len(records), -1), strict=True):
             for name, value in zip(names, numbers, strict=True):
                 record[name] = value
@@ -189,6 +193,7 @@ def _carry_state(old: TrainProblem, new: TrainProblem) -> None:
         (tm.train, source.train, _OF_TRAIN),
         (tm.shafts, source.shafts, _OF_SHAFT),
         (tm.meshes, source.meshes, _OF_MESH),
+        (tm.joints, source.joints, _OF_JOINT),
     ):
         for name in names:
             records[name] = others[name]

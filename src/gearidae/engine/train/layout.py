@@ -32,8 +32,11 @@ SHAFT: Final = record_type(
     ("viscous", REAL),  # [N m s]
     ("drag", REAL),  # [N m s^2]
     ("rubs", INT),  # 1 if anything dry may hold it
-    ("hub_arm", REAL),  # coefficient times radius of its hub [m]
-    ("hub_torque", REAL),  # of adhesion and axial load [N m]
+    (
+        "hub_arm",
+        REAL,
+    ),  # coefficient times radius of its hub [m]; of one that ages that of the last evaluation
+    ("hub_torque", REAL),  # of adhesion and axial load [N m], likewise
     ("hub_radius", REAL),  # [m]
     ("begin", REAL),  # departure at the start [rad]
     ("still", REAL),  # speed below which it counts as at rest beside flanks with friction [rad/s]
@@ -54,6 +57,20 @@ SHAFT: Final = record_type(
     ("load_x", REAL),  # force on its hub [N]
     ("load_y", REAL),
     ("hub", REAL),  # modulus of that [N]
+)
+
+JOINT: Final = record_type(
+    ("shaft", INT),
+    ("radius", REAL),  # [m]
+    ("hold", REAL),  # torque of adhesion and axial load over the coefficient [N m]
+    ("fresh", REAL),  # coefficient of fresh contacts [1]
+    ("rise", REAL),  # by how much that grows [1]
+    ("ageing_rate", REAL),  # [1/s]
+    ("forgetting", REAL),  # memory lengths in a radian
+    # state
+    ("age", REAL),  # at the accepted time [s]
+    # of the last evaluation
+    ("friction", REAL),  # coefficient [1]
 )
 
 MESH: Final = record_type(
@@ -103,7 +120,7 @@ TRAIN: Final = record_type(
     ("pushes", INT),  # 1 if the drive pushes with a pin
     ("cosine", REAL),  # of the direction of its axes in the frame
     ("sine", REAL),
-    ("pin_arm", REAL),  # coefficient times radius of the pin [m]
+    ("pin_arm", REAL),  # coefficient times radius of the pin [m], as those of hubs
     ("per_radian", REAL),  # pitches of the load's gear in a radian
     (
         "period",
@@ -112,6 +129,7 @@ TRAIN: Final = record_type(
     ("balance", INT),  # 1 if works and losses are followed
     ("flanks", INT),  # 1 if the flanks of any mesh have friction
     ("hubs", INT),  # 1 if the friction of any hub grows with its load
+    ("ages", INT),  # 1 if the friction of any joint grows with time at rest
     ("start", REAL),  # [s]
     ("end", REAL),  # [s]
     ("samples", INT),
@@ -213,6 +231,8 @@ class TrainModel(NamedTuple):
         `ELEMENT`: what is at rest beside flanks with friction.
     gram, work, box : ndarray
         See `gearidae.engine.train.box`; `box` has forces [N] of pairs, torques [N m] of shafts.
+    joints : ndarray of records, shape (N + 1,)
+        `JOINT`: the hubs of all shafts, and last the pin of the drive.
     """
 
     train: NDArray[Any]
@@ -230,6 +250,7 @@ class TrainModel(NamedTuple):
     gram: NDArray[np.float64]
     work: NDArray[np.float64]
     box: NDArray[np.float64]
+    joints: NDArray[Any]
 
 
 def blank_train(shafts: int, meshes: int, histories: int = 0) -> TrainModel:
@@ -252,6 +273,7 @@ def blank_train(shafts: int, meshes: int, histories: int = 0) -> TrainModel:
         np.zeros((elements, elements)),
         np.zeros((elements, elements + 1)),
         np.zeros((BOX_ROWS, elements)),
+        np.zeros(shafts + 1, JOINT),
     )
 
 

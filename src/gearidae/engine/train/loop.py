@@ -9,6 +9,7 @@ from gearidae.arrays import Floats
 from gearidae.compiled import compiled
 from gearidae.engine.events.record import EVENTS_AT_ONCE
 from gearidae.engine.integrate.driver import BOUND_EXCEEDED, CHATTER
+from gearidae.engine.train.ageing import follow_ageing
 from gearidae.engine.train.events import (
     accept_all,
     next_train_stop,
@@ -200,6 +201,8 @@ def finish_train_step(tm: TrainModel, time: float, root: bool, stop: float, out:
     follow_shafts(tm, time - train.time)
     _note_zero(tm, time - train.time, out)
     flying = accept_all(tm, time, new)
+    if train.ages != 0:
+        follow_ageing(tm, time, new)
     train.steps += 1
     train.flight_steps += flying == len(tm.meshes)
     if train.balance != 0:

@@ -26,6 +26,7 @@ from gearidae.engine.model.state import DRIVE, LOAD, PHASE, Model, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
 from gearidae.engine.pairs.mesh_error import MeshError, error_at
 from gearidae.engine.pairs.shaft_angle import torque_angle
+from gearidae.engine.train.ageing import set_joint_friction
 from gearidae.engine.train.flanks import add_flank_friction, hold_elements, set_limit
 from gearidae.engine.train.layout import OF_MESH, OF_SHAFT, OF_TRAIN, TrainModel
 from gearidae.laws.shaft.own import law_force
@@ -162,6 +163,8 @@ def motion(tm: TrainModel, t: float, y: Floats, dy: Floats) -> None:
     train, shafts, n = tm.train[0], tm.shafts, len(tm.shafts)
     train.evaluations += 1
     train.elements = 0
+    if train.ages != 0:
+        set_joint_friction(tm, t, y)
     for i in range(n):
         shaft, w = shafts[i], y[n + i]
         shaft.torque = -(shaft.viscous + shaft.drag * abs(w)) * w

@@ -47,6 +47,7 @@ def observe_train(tm: TrainModel, t: float, y: Floats, row: Floats) -> None:
         shaft = tm.shafts[i]
         row[at], row[at + 1] = y[n + i], shaft_angle(tm, i, y)
         row[at + 2], row[at + 3] = shaft.hub, math.atan2(shaft.load_y, shaft.load_x)
+        row[at + 4] = tm.joints[i].friction
         at += _SHAFT_COLUMNS
     for k in range(len(tm.meshes)):
         mesh = tm.meshes[k]
@@ -62,6 +63,7 @@ def observe_train(tm: TrainModel, t: float, y: Floats, row: Floats) -> None:
     if shaft.slip == 0.0 and shaft.rubs != 0:
         resistance = min(max(shaft.torque, -train.dry), train.dry)
     row[at], row[at + 1], row[at + 2] = train.drive_torque, resistance - train.drags, train.pin
+    row[at + 3] = tm.joints[n].friction
 
 
 # -- extremes --------------------------------------------------------------------------------------------------------
