@@ -81,6 +81,7 @@ FEATURES = {
     "humid air in one mesh": {
         **ADHERING,
         "contact.asperity": "meniscus",
+        "surface.humidity": 0.5,
         "meshes.first.surface.humidity": 0.9,
         "meshes.first.surface.bridged": 0.7,
     },
