@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ import pytest
 import gearidae as gd
 from gearidae.analysis import contact_resonance
 from gearidae.cli import main
+from gearidae.studies.declared import campbell
 
 LOW = gd.preset("teodorescu2009_low_speed").replace({"run.duration": 0.05, "run.samples": 5001})
 ORDER = 40
@@ -117,3 +119,12 @@ def test_the_command(tmp_path, monkeypatch, capsys):
     assert printed["kind"] == "campbell"
     speeds = gd.open("out.nc").speed.values
     assert speeds == pytest.approx(np.array([40.0, 60.0, 80.0]) * 2.0 * math.pi / 60.0)
+
+
+@pytest.mark.parametrize("case", ["microengine", "transmission"])
+def test_a_drive_that_holds_a_speed_has_no_pin(case):
+    """With the law its force goes, and with that the pin, which a couple does not have."""
+    scene = gd.load_case(Path(__file__).parents[2] / "cases" / f"{case}.toml")
+    held, _ = campbell._plan(scene, np.array([300.0, 400.0]), ringing=False)
+    assert scene.drive.pin_radius > 0.0 == held.drive.pin_radius
+    assert held.drive.law is None

@@ -25,6 +25,7 @@ from gearidae.runs.execution import RunOptions, prepared
 from gearidae.runs.sweep_plan import SweepPlan
 from gearidae.runs.sweeping import run_plan
 from gearidae.scene import GearScene, TrainScene, is_long_train, require_gears, require_meshes
+from gearidae.scene.joints import PIN_KEYS
 from gearidae.scene.judged import judged_mesh, judged_shaft
 from gearidae.scene.pairs import quantities, sweep_values
 from gearidae.scene.quantity import whole
@@ -165,6 +166,9 @@ def _plan(base: AnyGears, speeds: Floats, *, ringing: bool) -> tuple[AnyGears, S
             "drive.torque": 0.0,
             "drive.schedule": [],
             "drive.law": None,
+            "drive.orientation": 0.0,
+            "drive.pin_radius": 0.0,
+            **{f"drive.{key}": None for key in PIN_KEYS},
             "drive.speed": float(speeds[0]),
             "drive.speed_gain": gain,
             "run.stop": "time",
