@@ -211,15 +211,15 @@ MUTANTS = (
     Mutant(
         "dry resistance that pushes a gear that turns backwards",
         "engine/motion/shafts.py",
-        "return m.state.slip * dry_force(m, t, y)",
-        "return dry_force(m, t, y)",
+        "return m.state.slip * own_limit(m, LOAD, t, y, y[W])",
+        "return own_limit(m, LOAD, t, y, y[W])",
         ("properties/test_engine_symmetries.py",),
     ),
     Mutant(
         "dry resistance that holds twice as much as it should",
-        "engine/friction/forces.py",
-        "return max(driving_force(m, LOAD, t, torque_angle(m, LOAD, y[U]",
-        "return 2.0 * max(driving_force(m, LOAD, t, torque_angle(m, LOAD, y[U]",
+        "laws/shaft/dry_load.py",
+        "return value + max(driving_force(m, shaft, t, angle, speed), 0.0)",
+        "return value + 2.0 * max(driving_force(m, shaft, t, angle, speed), 0.0)",
         ("properties/test_event_times.py",),
     ),
     Mutant(
@@ -621,7 +621,7 @@ MUTANTS = (
     Mutant(
         "a gear that holds with the friction of its hub alone, without the dry load",
         "engine/friction/forces.py",
-        "margin = dry + joints.gear_hub * loads.gear - abs(pairs.gear)",
+        "margin = second_limit + joints.gear_hub * loads.gear - abs(pairs.gear)",
         "margin = joints.gear_hub * loads.gear - abs(pairs.gear)",
         ("engine/test_stick_slip.py", "engine/test_friction.py", "engine/test_hub_load.py"),
     ),
