@@ -14,7 +14,8 @@ error of a large vibration is the same either way; a small one that grows would 
 the latter.
 
 No step is longer than its excitation allows, about a sixth of a period of torques and mesh: seen at steps as long as
-periods, an excitation looks like none, and the estimate of the error does not notice.
+periods, an excitation looks like none, and the estimate of the error does not notice. Nor is it longer than the load
+of a hub allows that passes beside zero: see `gearidae.engine.friction.forces.load_pace`.
 
 IDA's own formulas are used in three cases: steps that are long against the fastest vibration, for which the Adams
 formulas are unstable; tolerances close to rounding, which affects the difference of two states that IDA's formulas do
@@ -31,6 +32,8 @@ import numpy as np
 
 from gearidae.compiled import compiled
 from gearidae.engine import adams
+from gearidae.engine.friction.forces import load_pace
+from gearidae.engine.friction.hubs import has_hubs
 from gearidae.engine.model.state import COAST, DRIVE, MOST_ORDERS, PHASE, Floats, Model, Record, U, V, W
 from gearidae.engine.pairs.tooth_pairs import in_flight, nearest_gap, rigid_separation
 from gearidae.engine.sundials import names as sun
@@ -48,6 +51,9 @@ STABILITY_LIMIT_RATIO: Final = (
     4.0  # how much longer a step could be, for its error, that stability limits too much
 )
 SWITCH_STEPS: Final = 20  # steps until formulas are changed
+TURNS_LOAD: Final = (
+    0.5  # longest step over the time in which the load of a hub changes by itself, beside zero
+)
 # By how much steps grow at least, or else stay, and at most, and most of all from a start.
 GROW: Final = 1.5  # fewer steps than with IDA's 2, at the same error
 GROW_MOST: Final = 2.0
@@ -166,7 +172,12 @@ def control_step(n: int, m: Model, h: float, correction: Floats, weights: Floats
     limited = twice < (unstable / STABILITY_LIMIT_RATIO**2) ** (order + 1)
     a.limited_steps = a.limited_steps + 1 if limited and unstable * GROW**2 > 1.0 else 0
     most = GROW_START if a.n_history == used else GROW_MOST
-    bound = max(most**-2.0, unstable, (h * _excitation(m)) ** 2)
+    fastest = _excitation(m)
+    if has_hubs(m):
+        first = m.scene.error_weights_at
+        pace = load_pace(m, max(m.rows[first + V], m.rows[first + W]))
+        fastest = max(fastest, pace / TURNS_LOAD)
+    bound = max(most**-2.0, unstable, (h * fastest) ** 2)
     shorter = _shorter(twice, order, bound)
     wanted = max(0.5 * shorter, 1.05) if error > MOST else min(0.5 * shorter, 0.99)
     total = adams.weighed_squares(n, correction, weights)
