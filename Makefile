@@ -27,11 +27,15 @@ run: $(VENV)/installed
 	    -o out/low_speed.nc --overwrite
 	$(BIN)/gearidae plot out/low_speed.nc -o out/low_speed.png --overwrite
 
+# Kept also where the environment says otherwise: tests start some hundred processes, of which each would compile the sources
+# of the package, half a second each.
+BYTECODE := PYTHONDONTWRITEBYTECODE=
+
 # Two processes: each compiles the solver once, and files stay whole, whose runs are shared by their tests. In their own
 # order, so that the long ones of the engine do not come last, with one process idle.
 test: $(VENV)/installed-dev
 	$(MAKE) --jobs 2 lint warm
-	$(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder
+	$(BYTECODE) $(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder
 
 # What takes minutes and changes hardly ever: before a release, and after a change of how functions are compiled.
 test-by-hand: $(VENV)/installed-dev
@@ -39,7 +43,7 @@ test-by-hand: $(VENV)/installed-dev
 
 # Compile beforehand what both processes of the tests need, while the linters run.
 warm: $(VENV)/installed-dev
-	$(BIN)/gearidae compile
+	$(BYTECODE) $(BIN)/gearidae compile
 
 # The short suite: both drivers, scenes, archives, pictures and the command line.
 # In one process, which compiles the solver once; two of these suites run side by side in `.ci/versions`.

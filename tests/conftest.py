@@ -1,3 +1,4 @@
+import gc
 import signal
 from numbers import Real
 
@@ -16,6 +17,18 @@ settings.load_profile("gearidae")
 
 SMALL = 1e-10
 """Of which pytest's own absolute tolerance is more than a percent."""
+
+
+def pytest_collection():
+    """Look for no garbage while modules and tests are made, of which there is none."""
+    gc.disable()
+
+
+def pytest_collection_finish():
+    """Leave all that out of every later search."""
+    gc.collect()
+    gc.freeze()
+    gc.enable()
 
 
 @pytest.fixture(autouse=True, scope="session")

@@ -197,12 +197,12 @@ def test_motion_is_the_twins():
         {
             "initial.mesh_phase": 0.8,
             "initial.gap": 5.5 * 6e-9,
-            "run.duration": 2e-3,
+            "run.duration": 1e-3,
             "run.samples": 21,
             "run.rtol": 1e-10,
         }
     )
-    ours, twin = solve(scene), SlowGears(scene).run(np.linspace(0.0, 2e-3, 21))
+    ours, twin = solve(scene), SlowGears(scene).run(np.linspace(0.0, 1e-3, 21))
     assert np.count_nonzero(ours.events.kind == 2) >= 2  # the history has been used
     # as in `test_twin`: tolerance of both and the growth of errors over the cycles
     np.testing.assert_allclose(ours.samples["transmission_error"], twin[0], atol=2e-7 * 6e-9)

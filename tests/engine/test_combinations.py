@@ -84,8 +84,9 @@ def exposures_of(run):
 
 @cache
 def run_of(features):
-    """The native driver's run of both halves."""
-    return solve(scene_with(*features).replace(WHOLE), backend="native")
+    """The native driver's run of both halves, and its blocks."""
+    blocks = []
+    return solve(scene_with(*features).replace(WHOLE), backend="native", on_block=blocks.append), blocks
 
 
 EVERY = 5
@@ -107,7 +108,7 @@ def test_each_feature_is_run_by_both_drivers():
 
 @pytest.mark.parametrize("features", IN_BOTH, ids=" + ".join)
 def test_drivers_agree(features):
-    whole, native = scene_with(*features).replace(WHOLE), run_of(features)
+    whole, (native, _) = scene_with(*features).replace(WHOLE), run_of(features)
     if features in TIGHTER:
         whole = whole.replace({"run.rtol": TIGHTER[features]})
         native = solve(whole)
@@ -129,12 +130,11 @@ def test_drivers_agree(features):
 @pytest.mark.parametrize("features", [*PAIRS, *TRIPLES], ids=" + ".join)
 def test_features_go_together(features):
     scene = scene_with(*features)
-    whole, native = scene.replace(WHOLE), run_of(features)
+    whole, (native, blocks) = scene.replace(WHOLE), run_of(features)
     assert native.status == "finished"
     assert_closes(whole, native)
 
     # resumed from the checkpoint in the middle, and continued from a run of the first half
-    blocks = list(run_blocks(make_problem(whole), 1e-8, 2 * SAMPLES - 1, "native", Statistics()))
     (cut, *_) = [k for k, block in enumerate(blocks) if block.checkpoint is not None]
     assert cut < len(blocks) - 1
     resumed = list(

@@ -21,7 +21,12 @@ from gearidae.studies.declared.starting_torque import STUDY
 SCENE = gd.preset("teodorescu2009_low_speed")
 FORCE = SCENE.drive.torque / SCENE.gears.pinion_base_radius
 TEETH = SCENE.replace(
-    {"coating.sam_fraction": 0.5, "mesh.pitch_error_rms": "3 nm", "mesh.pitch_error_seed": 7}
+    {
+        "coating.sam_fraction": 0.5,
+        "mesh.pitch_error_rms": "3 nm",
+        "mesh.pitch_error_seed": 7,
+        "run.rtol": 1e-4,  # teeth that hold the gear ring: a tenth of the steps
+    }
 )
 
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 import sys
+from functools import cache
 from typing import Final, NamedTuple
 
 import numba
@@ -20,7 +21,7 @@ import numpy.typing as npt
 import gearidae as gd
 from gearidae.asperities.tip import asperity_of
 from gearidae.contact.line import line_force
-from gearidae.scene import Scene, require_gears
+from gearidae.scene import Scene, Surface, require_gears
 
 __all__ = ["KELVIN", "Motion", "shaken", "sticks"]
 
@@ -109,6 +110,14 @@ def _run(tables, limits, shares, sizes, torques, state, noise, rng, steps, every
     return out
 
 
+@cache  # a quadrature for each of 28,700 states, which takes some seconds: many runs share it
+def _table(surface: Surface, width: float) -> npt.NDArray[np.float64]:
+    """Force over the root of the radius of a material, at `_GAPS` and `_STRETCHES`, shape (700, 41)."""
+    sigma, limit = surface.roughness, asperity_of(surface).stretch_limit
+    gaps, stretches = np.meshgrid(_GAPS * sigma, np.linspace(0.0, 1.0, _STRETCHES), indexing="ij")
+    return line_force(gaps, stretches * limit, 1.0, width, surface)
+
+
 def shaken(scene: Scene, damping: float, seed: int, kelvin: float = KELVIN, duration: float = 0.36) -> Motion:
     """Follow the slow gears of a scene that heat shakes.
 
@@ -135,13 +144,7 @@ def shaken(scene: Scene, damping: float, seed: int, kelvin: float = KELVIN, dura
     materials = {part.name: part for part in scene.materials()}
     parts = [materials["bare"], materials["coated"]]
     limits = np.array([asperity_of(part.surface).stretch_limit for part in parts])
-    gaps, stretches = np.meshgrid(_GAPS * sigma, np.linspace(0.0, 1.0, _STRETCHES), indexing="ij")
-    tables = np.array(
-        [
-            line_force(gaps, stretches * limit, 1.0, gears.face_width, part.surface)
-            for part, limit in zip(parts, limits, strict=True)
-        ]
-    )
+    tables = np.array([_table(part.surface, gears.face_width) for part in parts])
     half, phase = 0.5 * scene.mesh.backlash, scene.initial.mesh_phase
     sizes = (
         sigma,
