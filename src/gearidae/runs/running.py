@@ -150,15 +150,21 @@ def solve(
 
 
 def solve_any(
-    scene: Scene, backend: str, on_progress: Callable[[float, int], None] | None = None
+    scene: Scene,
+    backend: str,
+    on_progress: Callable[[float, int], None] | None = None,
+    *,
+    start: engine.Start | None = None,
 ) -> AnySolution:
     """Run a scene as `solve` does, or a train of several meshes."""
     if not is_long_train(scene):
-        return solve(scene, backend, on_progress)
+        return solve(scene, backend, on_progress, start=start)
+    from gearidae import engine
     from gearidae.runs.train_run import run_train  # which few runs need
 
     try:
-        return run_train(scene, backend, _heeding(on_progress))
+        at = engine.AT_ONCE if start is None else start
+        return run_train(scene, backend, _heeding(on_progress), start=at)
     except SolverError as error:
         return nothing_of(scene, "failed", str(error))
 
@@ -185,9 +191,9 @@ def solve_to_end(scene: Scene, backend: str, start: engine.Start | None = None) 
     return solution
 
 
-def solve_any_to_end(scene: Scene, backend: str) -> AnySolution:
+def solve_any_to_end(scene: Scene, backend: str, start: engine.Start | None = None) -> AnySolution:
     """Run a scene as `solve_to_end` does, or a train of several meshes."""
-    solution = solve_any(scene, backend)
+    solution = solve_any(scene, backend, start=start)
     if solution.status == "interrupted":
         raise KeyboardInterrupt
     return solution

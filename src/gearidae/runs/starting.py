@@ -14,6 +14,8 @@ from gearidae.scene import Scene, is_long_train
 if TYPE_CHECKING:
     import xarray as xr
 
+    from gearidae.records import Words
+
 
 def started_from(start: xr.Dataset | str | os.PathLike[str] | None, scene: Scene) -> engine.Start:
     """Read where a run is to go on from, and make sure that a scene can.
@@ -62,11 +64,31 @@ def _end_of(attributes: Mapping[Any, Any]) -> engine.Start:
         theirs = Scene.from_dict(json.loads(attributes["scene"]))
     except (TypeError, ValueError) as error:
         raise SceneError("start", "scene", f"is not readable ({error})") from None
-    if is_long_train(theirs):
+    return end_of_run(theirs, words, began)
+
+
+def end_of_run(scene: Scene, words: Words, began: float) -> engine.Start:
+    """Return the start of a run that goes on from the checkpoint of another, of a pair or a train.
+
+    Parameters
+    ----------
+    scene : Scene
+        Of the run.
+    words : ndarray of 8-byte words
+        Its checkpoint.
+    began : float
+        When it began [s].
+
+    Raises
+    ------
+    SceneError
+        If the checkpoint is not of this scene, or damaged.
+    """
+    if is_long_train(scene):
         from gearidae.engine.train import end_of_train  # which few runs need
 
-        return end_of_train(theirs, words, began)
-    return engine.end_of(theirs, words, began)
+        return end_of_train(scene, words, began)
+    return engine.end_of(scene, words, began)
 
 
 def started_attributes(start: engine.Start) -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""Follow the wear of hubs and pin, and say after how many turns of the pinion which of them fails first."""
+"""Follow the wear of hubs and pin, and say after how many turns of the drive's shaft which of them fails first."""
 
 from __future__ import annotations
 
@@ -47,6 +47,11 @@ def _announced(_: Scene, __: int | None, *, frequencies: list[float] | None, **_
     return f"{many}, until the sliding of the joints in a turn is steady"
 
 
+def _turning(ds: xr.Dataset) -> str:
+    """Name the shaft whose turns count: of a train that of the drive."""
+    return str(ds.attrs.get("shaft", "the pinion"))
+
+
 def _first(point: xr.Dataset) -> str:
     """Name the joint that fails first at a frequency, in most of the devices."""
     return str(point["joint"].values[int(np.argmax(point["first_share"].values))])
@@ -74,7 +79,7 @@ def _sentence(ds: xr.Dataset) -> str:
     turns = _range([f"{life:.3g}" for life in lives])
     hours = _range([f"{life / rate / 3600.0:.3g}" for life, rate in zip(lives, rates, strict=True)])
     speeds = _range([f"{rate:.4g}" for rate in rates])
-    return f"{who}, after {turns} turns of the pinion ({hours} h at {speeds} turns/s){median}. {FITTED}"
+    return f"{who}, after {turns} turns of {_turning(ds)} ({hours} h at {speeds} turns/s){median}. {FITTED}"
 
 
 def _range(texts: Sequence[str]) -> str:
@@ -88,7 +93,7 @@ def _rows(ds: xr.Dataset) -> Rows:
     for number in range(ds.sizes["frequency"]):
         point = ds.isel(frequency=number)
         yield (
-            f"Lives at {float(point['frequency']):.4g} turns/s of the pinion",
+            f"Lives at {float(point['frequency']):.4g} turns/s of {_turning(ds)}",
             "turns",
             "hours, sliding in a turn",
         )
@@ -113,7 +118,7 @@ def _rows(ds: xr.Dataset) -> Rows:
 
 
 def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
-    """Draw the lives of the joints against the turns of the pinion in a second.
+    """Draw the lives of the joints against the turns of the pinion, of a train the drive's shaft, in a second.
 
     Parameters
     ----------
@@ -150,7 +155,7 @@ def picture(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
                 joint["frequency"], low, high, color=line_colour(number), alpha=0.15, linewidth=0.0
             )
     ax.set_yscale("log")
-    ax.set_xlabel("turns of the pinion in a second")
+    ax.set_xlabel(f"turns of {_turning(ds)} in a second")
     ax.set_ylabel("life (turns)")
     tidy(ax)
     ax.legend(frameon=False, fontsize="small")
@@ -170,18 +175,24 @@ STUDY = Study(
         'gearidae hub-life engine.toml --coefficient "1e-16 m^2/N" --threshold "2 sigma" --spread 2',
     ),
     columns={
-        "frequency": Column(("frequency",), "s-1", "turns of the pinion in a second"),
-        "joint": Column(("joint",), "", "hub or pin"),
-        "sliding": Column(
-            _ALONG, "N m", "load of the joint times the way of its surface, in a turn of the pinion"
+        "frequency": Column(
+            ("frequency",), "s-1", "turns of the pinion, of a train the drive's shaft, in a second"
         ),
+        "joint": Column(("joint",), "", "hub or pin"),
+        "sliding": Column(_ALONG, "N m", "load of the joint times the way of its surface, in a turn"),
         "volume": Column(("joint",), "m3", "worn volume at which the joint has failed"),
-        "turns": Column(_ALONG, "1", "turns of the pinion until then, with the median coefficient"),
+        "turns": Column(
+            _ALONG,
+            "1",
+            "turns of the pinion, of a train the drive's shaft, until then, with the median coefficient",
+        ),
         "hours": Column(_ALONG, "h", "the same in hours"),
         "turns_quantile": Column((*_ALONG, "quantile"), "1", "quantiles of the life of the joint"),
         "first_share": Column(_ALONG, "1", "share of the devices in which the joint fails first"),
         "life": Column(
-            ("frequency", "seed"), "1", "turns of the pinion until the first joint of a device fails"
+            ("frequency", "seed"),
+            "1",
+            "turns of the pinion, of a train the drive's shaft, until the first joint of a device fails",
         ),
         "life_quantile": Column(("frequency", "quantile"), "1", "quantiles of that over the devices"),
         "drift": Column(("frequency",), "1", "difference of the last two blocks of turns"),
@@ -196,7 +207,5 @@ STUDY = Study(
     },
     sentence=_sentence,
     rows=_rows,
-    pictures=(
-        Picture("hub_life", "Lives of the joints against the turns of the pinion in a second", draw=picture),
-    ),
+    pictures=(Picture("hub_life", "Lives of the joints against the turns in a second", draw=picture),),
 )

@@ -1,4 +1,4 @@
-"""Life of hubs and pin by Archard's law, from what they slide in a turn of the pinion."""
+"""Life of hubs and pin by Archard's law, from what they slide in a turn of the pinion, of a train the drive's shaft."""
 
 from __future__ import annotations
 
@@ -16,11 +16,18 @@ from gearidae.errors import SceneError, SolverError
 from gearidae.runs.execution import RunOptions, prepared
 from gearidae.runs.run_cache import RunCache
 from gearidae.runs.running import failure_of
-from gearidae.scene import require_gears
-from gearidae.scene.joints import joints
+from gearidae.scene import TrainScene, require_meshes
+from gearidae.scene.joints import Joint, joints
 from gearidae.scene.quantity import Quantity, switch, whole
 from gearidae.wear.declared.hub_life import FITTED, QUANTILES, STUDY
-from gearidae.wear.lives.hub_turns import SUMS, Slid, Turns, run_turns, settling_scene
+from gearidae.wear.lives.hub_turns import (
+    Slid,
+    Turns,
+    names_of_sums,
+    run_turns,
+    settling_scene,
+    shaft_of_turns,
+)
 from gearidae.wear.lives.hub_wear import (
     Threshold,
     drawn_factors,
@@ -86,6 +93,7 @@ def hub_life(
 ) -> xr.Dataset:
     r"""Turns of the pinion after which hubs and pin have worn off a volume, and which of them is the first.
 
+    Of a train of several meshes the drive's shaft stands for the pinion, and the joints are the hubs of all shafts.
     The scene is run to its end, by which it must have settled and its schedules be over. It goes on for whole turns of
     the pinion until what each joint slides, :math:`S = \int N |v|\,\mathrm{d}t`, is steady. Archard's law then gives
     the life :math:`V/(k S)` in turns. Loads do not change as joints wear.
@@ -93,7 +101,8 @@ def hub_life(
     Parameters
     ----------
     scene : Scene
-        With gears that turn on, and a hub or a pin with a radius.
+        With gears that turn on, and a hub or a pin with a radius; the friction of a train's pin must be above 0 and
+        not age, as its sliding is taken from its loss.
     coefficient : float or str
         Wear coefficient over hardness, k, in m^2/N or with a unit: a number that is fitted, as no open measurement was
         found.
@@ -111,7 +120,7 @@ def hub_life(
         Of a drive whose law has a ``frequency`` [Hz]: its last value. The whole schedule and the initial speed are
         scaled with it. By default that of the scene.
     length : float or str, optional
-        Of the joints, in metres or with a unit; by default the face width.
+        Of the joints, in metres or with a unit; by default the face width, which must be that of all meshes.
     turns : int, optional
         Turns of the pinion in a block.
     tolerance : float, optional
@@ -144,8 +153,8 @@ def hub_life(
     has worn by h lets its shaft cross 2 h where the tooth force reverses, so that the play along the line of action
     grows by 2 h at most; a worn pin adds none.
     """
-    scene = require_gears(scene)
-    base, execution = prepared(scene, options, samples="off")
+    scene = require_meshes(scene)
+    base, execution = prepared(scene, options, samples="off", trains=True)
     seeds = whole("seeds", seeds, 1, 1_000_000)
     wear = _wear(base, coefficient, threshold, (spread, seeds), length)
     measured = Turns(whole("turns", turns, 1, 10_000), _TOLERANCE.take("tolerance", tolerance))
@@ -176,7 +185,7 @@ def hub_life(
     return STUDY.compute(execution, runs[0], work, settings, origin=scene)
 
 
-def at_frequency(scene: GearScene, frequency: float) -> GearScene:
+def at_frequency(scene: GearScene | TrainScene, frequency: float) -> GearScene | TrainScene:
     """Return the scene with another last frequency of its drive's law [Hz], schedule and initial speed in proportion.
 
     Raises
@@ -196,7 +205,7 @@ def at_frequency(scene: GearScene, frequency: float) -> GearScene:
 
 
 def _wear(
-    scene: GearScene,
+    scene: GearScene | TrainScene,
     coefficient: float | str,
     threshold: float | str,
     scatter: tuple[float | str, int],
@@ -205,9 +214,12 @@ def _wear(
     """Read the numbers of the wear."""
     there = [joint for joint in joints(scene) if joint.radius > 0.0]
     if not there:
-        allowed = "must have a hub or a pin with a radius (gears.pinion_hub_radius, drive.pin_radius)"
+        hub = "shafts.NAME.hub_radius" if isinstance(scene, TrainScene) else "gears.pinion_hub_radius"
+        allowed = f"must have a hub or a pin with a radius ({hub}, drive.pin_radius)"
         raise SceneError("scene", scene.name, allowed)
-    size = scene.gears.face_width if length is None else _LENGTH.take("length", length)
+    if isinstance(scene, TrainScene):
+        _check_pin(there)
+    size = _face_width(scene) if length is None else _LENGTH.take("length", length)
     limit: Threshold = read_threshold(threshold)
     k, spread = _COEFFICIENT.take("coefficient", coefficient), _SPREAD.take("spread", scatter[0])
     count = scatter[1] if spread > 1.0 else 1
@@ -217,8 +229,33 @@ def _wear(
     return _Wear([joint.name for joint in there], radii, volumes, size, k, spread, factors)
 
 
+def _check_pin(there: Sequence[Joint]) -> None:
+    """Refuse a pin of a train whose loss does not say what it slides."""
+    pin = next((joint for joint in there if joint.name == "pin"), None)
+    if pin is not None and (pin.arm == 0.0 or pin.rise > 0.0):
+        key, value = ("pin_friction_rise", pin.rise) if pin.rise > 0.0 else ("pin_friction", pin.coefficient)
+        allowed = "must be 0" if pin.rise > 0.0 else "must be above 0"
+        reason = f"{allowed} for lives of a train, which take the sliding of its pin from its loss"
+        raise SceneError(f"drive.{key}", value, f"{reason}; without drive.pin_radius the pin is left out")
+
+
+def _face_width(scene: GearScene | TrainScene) -> float:
+    """Face width of all meshes [m]."""
+    if not isinstance(scene, TrainScene):
+        return scene.gears.face_width
+    widths = {mesh.face_width for mesh in scene.train.meshes}
+    if len(widths) > 1:
+        raise SceneError("length", "(missing)", "is required where meshes differ in their face widths")
+    return widths.pop()
+
+
 def _dataset(
-    scene: GearScene, wear: _Wear, requested: list[float] | None, words: list[str], *, clearance: bool
+    scene: GearScene | TrainScene,
+    wear: _Wear,
+    requested: list[float] | None,
+    words: list[str],
+    *,
+    clearance: bool,
 ) -> xr.Dataset:
     failures = [failure_of(word) for word in words]
     for failure in filter(None, failures):
@@ -231,9 +268,10 @@ def _dataset(
             last_event="none",
             advice="let the scene settle: a longer run.duration, schedules that end before it, a load that is carried",
         )
-    none = Slid((math.nan,) * len(SUMS), math.nan, math.nan)
+    names = names_of_sums(scene)
+    none = Slid((math.nan,) * len(names), math.nan, math.nan)
     slides = [none if failure else Slid.read(word) for failure, word in zip(failures, words, strict=True)]
-    indices = [list(SUMS).index(name) for name in wear.names]
+    indices = [names.index(name) for name in wear.names]
     sliding = np.array([slid.sliding for slid in slides])[:, indices]
     rates = np.array([slid.rate for slid in slides])
     asked = np.array(rates if requested is None else requested)
@@ -249,10 +287,12 @@ def _dataset(
     }
     if clearance:
         values |= _worn(wear, sliding)
+    turning = shaft_of_turns(scene)
     attributes = {
         **provenance(scene, "found lives of hubs"),
+        **({"shaft": turning} if isinstance(scene, TrainScene) else {}),
         "title": f"{scene.name}: lives of hubs and pin",
-        "summary": f"Turns of the pinion until a joint has worn off a volume, by Archard's law. {FITTED}",
+        "summary": f"Turns of {turning} until a joint has worn off a volume, by Archard's law. {FITTED}",
         "coefficient": wear.coefficient,
         "spread": wear.spread,
         "length": wear.length,

@@ -1,4 +1,4 @@
-"""What the joints of a gear pair slide in a turn of the pinion: whole turns, one block after another, until steady."""
+"""What joints slide in a turn of the drive's shaft, of a pair the pinion: blocks of whole turns until it is steady."""
 
 from __future__ import annotations
 
@@ -12,18 +12,23 @@ import numpy as np
 from gearidae import engine
 from gearidae.arrays import Floats
 from gearidae.errors import SolverError
-from gearidae.runs.running import FAILS, solve_to_end, unfinished, unsolved
+from gearidae.records.train_results import AnySolution, TrainSolution
+from gearidae.runs.running import FAILS, nothing_of, solve_any_to_end, unfinished, unsolved
+from gearidae.runs.starting import end_of_run
+from gearidae.runs.train_statics import ratios
+from gearidae.scene import TrainScene
+from gearidae.scene.joints import train_pin
+from gearidae.scene.judged import judged_shaft
 
 if TYPE_CHECKING:
-    from gearidae.records import Solution
     from gearidae.scene import GearScene
 
-SUMS: Final = {
+_SUMS: Final = {
     "pinion hub": "pinion_hub_sliding",
     "gear hub": "gear_hub_sliding",
     "pin": "pin_sliding",
 }
-"""Joints, and the totals of a run that say what they have slid."""
+"""Joints of a pair, and the totals of a run that say what they have slid."""
 _PATIENCE: Final = 4.0
 """Time that a block gets, over that of its turns at the speed with which it begins."""
 _MOST_BLOCKS: Final = 20
@@ -31,7 +36,7 @@ _MOST_BLOCKS: Final = 20
 
 @dataclass(frozen=True, slots=True)
 class Turns:
-    """Whole turns of the pinion that are measured.
+    """Whole turns of the drive's shaft that are measured.
 
     Attributes
     ----------
@@ -47,14 +52,14 @@ class Turns:
 
 @dataclass(frozen=True, slots=True)
 class Slid:
-    """What joints slide in a turn of the pinion.
+    """What joints slide in a turn of the drive's shaft.
 
     Attributes
     ----------
     sliding : tuple of float
-        Integral of load times speed of each of `SUMS` [N m].
+        Integral of load times speed of each of `names_of_sums` [N m].
     rate : float
-        Turns of the pinion in a second.
+        Turns of the drive's shaft in a second.
     drift : float
         Largest relative difference of two blocks, of the joints that slide.
     """
@@ -70,8 +75,21 @@ class Slid:
         return cls(tuple(numbers["sliding"]), numbers["rate"], numbers["drift"])
 
 
-def settling_scene(scene: GearScene, turns: Turns) -> GearScene:
+def names_of_sums(scene: GearScene | TrainScene) -> list[str]:
+    """Names of the joints whose sliding runs of a scene add up, with a radius or without."""
+    if isinstance(scene, TrainScene):
+        return [*(f"hub of {name}" for name in scene.shafts), "pin"]
+    return list(_SUMS)
+
+
+def shaft_of_turns(scene: GearScene | TrainScene) -> str:
+    """Name of the shaft whose turns count: the drive's, of a pair the pinion."""
+    return scene.train.shafts[scene.train.drive].name if isinstance(scene, TrainScene) else "the pinion"
+
+
+def settling_scene(scene: GearScene | TrainScene, turns: Turns) -> GearScene | TrainScene:
     """Return the scene that settles: it keeps the sums, and its name says what is measured afterwards."""
+    turning = f"{turns.count} turns of {shaft_of_turns(scene)} of {scene.name}"
     return scene.replace(
         {
             "run.balance": True,
@@ -79,12 +97,12 @@ def settling_scene(scene: GearScene, turns: Turns) -> GearScene:
             "run.exposures": 0,
             "run.checkpoints": [],
             "run.stop": "time",
-            "name": f"blocks of {turns.count} turns of the pinion of {scene.name}, steady to {turns.tolerance:g}",
+            "name": f"blocks of {turning}, steady to {turns.tolerance:g}",
         }
     )
 
 
-def run_turns(scene: GearScene, turns: Turns, backend: str) -> tuple[Solution, str]:
+def run_turns(scene: GearScene | TrainScene, turns: Turns, backend: str) -> tuple[AnySolution, str]:
     """Run a scene to its end, then blocks of turns until what the joints slide is steady.
 
     Parameters
@@ -97,75 +115,86 @@ def run_turns(scene: GearScene, turns: Turns, backend: str) -> tuple[Solution, s
 
     Returns
     -------
-    Solution, str
+    Solution or TrainSolution, str
         Of the last block, and a `Slid` as JSON; `FAILS` and a message where there is no answer: one run does not end a
         study of several.
     """
     try:
         solution, word = _measured(scene, turns, backend)
     except SolverError as error:
-        return unsolved("failed", str(error)), f"{FAILS}{error}"
+        return nothing_of(scene, "failed", str(error)), f"{FAILS}{error}"
+    if isinstance(solution, TrainSolution):
+        none = TrainSolution.none(solution.shafts, solution.meshes, "", "")
+        return replace(solution, events=none.events, checkpoint=None), word
     return replace(solution, events=unsolved("", "").events, checkpoint=None), word
 
 
-def _measured(scene: GearScene, turns: Turns, backend: str) -> tuple[Solution, str]:
+def _measured(scene: GearScene | TrainScene, turns: Turns, backend: str) -> tuple[AnySolution, str]:
     before, block = _solved(scene, backend), scene
     start, rate = engine.AT_ONCE, _late_rate(before, scene)
     blocks: list[Floats] = []
     while rate > 0.0 and not _stands(before):
         assert before.checkpoint is not None
-        start = engine.end_of(block, before.checkpoint, start.time)
+        start = end_of_run(block, before.checkpoint, start.time)
         block = _block(scene, turns, rate)
         after = _solved(block, backend, start)
-        slid, took, turned = _gained(after, before, start, block)
-        if turned < turns.count * (1.0 - 1e-6):
-            before = after
+        assert after.reached is not None
+        took = after.reached - start.time
+        slid, before = _sums(scene, after) - _sums(scene, before), after
+        # turns that are made end a block before its time is up
+        if took >= block.run.duration * (1.0 - 1e-9):
             break
-        blocks.append(slid / turned)
-        before, rate, drift = after, turned / took, _drift(blocks)
+        blocks.append(slid / turns.count)
+        rate, drift = turns.count / took, _drift(blocks)
         if drift <= turns.tolerance or len(blocks) == _MOST_BLOCKS:
             return after, json.dumps({"sliding": blocks[-1].tolist(), "rate": rate, "drift": drift})
-    return before, f"{FAILS}the gear does not turn on at {before.reached:g} s"
+    whose = scene.train.shafts[judged_shaft(scene)].name if isinstance(scene, TrainScene) else "the gear"
+    return before, f"{FAILS}{whose} does not turn on at {before.reached:g} s"
 
 
-def _late_rate(settled: Solution, scene: GearScene) -> float:
-    """Turns of the pinion in a second, in the second half of a run to its end; 0 if that is not known."""
+def _late_rate(settled: AnySolution, scene: GearScene | TrainScene) -> float:
+    """Turns of the drive's shaft in a second, in the second half of a run to its end; 0 if that is not known."""
     speed = math.nan if settled.extremes is None else abs(settled.extremes.late_gear_speed)
-    rate = speed * scene.gears.gear_teeth / (2.0 * math.pi * scene.gears.pinion_teeth)
+    rate = speed / (2.0 * math.pi * _over_drive(scene)[0])
     return 0.0 if math.isnan(rate) else rate
 
 
-def _solved(scene: GearScene, backend: str, start: engine.Start = engine.AT_ONCE) -> Solution:
-    solution = solve_to_end(scene, backend, start)
+def _over_drive(scene: GearScene | TrainScene) -> tuple[float, float]:
+    """Speeds of the judged shaft and of the load's over that of the drive's; both are the gear of a pair."""
+    if isinstance(scene, TrainScene):
+        judged, load = ratios(scene.train)[[judged_shaft(scene), scene.train.load]]
+        return float(judged), float(load)
+    return (scene.gears.pinion_teeth / scene.gears.gear_teeth,) * 2
+
+
+def _solved(scene: GearScene | TrainScene, backend: str, start: engine.Start = engine.AT_ONCE) -> AnySolution:
+    solution = solve_any_to_end(scene, backend, start)
     if solution.extremes is None or solution.status != "finished":
         raise unfinished(solution, f"the run of {scene.name}")
     return solution
 
 
-def _stands(solution: Solution) -> bool:
+def _stands(solution: AnySolution) -> bool:
     """Whether the gear stands or has gone back at the end of a run."""
     extremes = solution.extremes
     return extremes is None or not (math.isnan(extremes.stick_time) and math.isnan(extremes.back_time))
 
 
-def _block(scene: GearScene, turns: Turns, rate: float) -> GearScene:
-    """Return the scene of a block, with the time that it may take at a rate of turns of the pinion."""
-    way = turns.count * scene.gears.pinion_teeth / scene.gears.gear_teeth
+def _block(scene: GearScene | TrainScene, turns: Turns, rate: float) -> GearScene | TrainScene:
+    """Return the scene of a block, with the time that it may take at a rate of turns of the drive's shaft."""
+    way = turns.count * _over_drive(scene)[1]
     return scene.replace({"run.stop": f"turns {way!r}", "run.duration": _PATIENCE * turns.count / rate})
 
 
-def _gained(
-    after: Solution, before: Solution, start: engine.Start, block: GearScene
-) -> tuple[Floats, float, float]:
-    """What a block has slid [N m], the time it took [s], and turns of the pinion."""
-    assert after.checkpoint is not None
-    assert start.position is not None
-    end = engine.end_of(block, after.checkpoint, start.time)
-    assert end.position is not None
-    assert after.balance is not None
-    assert before.balance is not None
-    slid = np.array([after.balance[name] - before.balance[name] for name in SUMS.values()])
-    return slid, end.time - start.time, abs(end.position - start.position) / block.gears.pinion_teeth
+def _sums(scene: GearScene | TrainScene, solution: AnySolution) -> Floats:
+    """What joints have slid by the end of a run [N m], as `names_of_sums` has them."""
+    if isinstance(solution, TrainSolution):
+        pin = train_pin(scene)
+        # a train has no sum of its own for the pin: its friction has taken so much, at a constant coefficient
+        slid = solution.energy["pin_loss"] / pin.coefficient if pin.arm > 0.0 else 0.0
+        return np.append(solution.shaft_totals["hub_sliding"], slid)
+    assert solution.balance is not None
+    return np.array([solution.balance[name] for name in _SUMS.values()])
 
 
 def _drift(blocks: list[Floats]) -> float:
