@@ -307,13 +307,6 @@ MUTANTS = (
         ("engine/test_static_condensation.py",),
     ),
     Mutant(
-        "a branch of the stored energy kept beyond the turning point that ends it",
-        "engine/laws/statistical.py",
-        "+ B_PIECES] = 0.0",
-        "+ B_PIECES] *= 1.0",
-        ("engine/test_energy_balance.py",),
-    ),
-    Mutant(
         "a joining loss recorded at the turning point, and taken from the radius's power at the next look",
         "engine/observers/adhesion_loss.py",
         "            _accumulate_before(m, flank, pair, y[PHASE], losses)",

@@ -548,7 +548,9 @@ def account(
         Work space.
     """
     force, closed = math.nan, False
-    if m.scene.follow.balance != 0:
+    # The balance follows lags over several steps at once. Nodes of elastic contacts join one by one, which makes
+    # kinks; and exposures ask for the lags at any accepted time.
+    if m.scene.follow.balance != 0 and (m.scene.nodes > 0 or m.scene.follow.exposures != 0):
         adhesion_loss.step(m, t, y, yp[W])
     if m.scene.follow.friction != 0:
         force = friction_losses.accumulate_friction(m, t, y, at[1], between[0], between[1])
@@ -723,7 +725,7 @@ def prepare_restart(m: Model, t: float, y: Floats, yp: Floats) -> None:
 def account_event(m: Model, t: float, y: Floats, yp: Floats, event: PairEvent) -> None:
     """Take note of what has happened to a pair, before its history does."""
     if m.scene.follow.balance != 0 and event.turns:
-        adhesion_loss.event(m, y, event.flank, event.pair, event.k, event.gap)
+        adhesion_loss.event(m, t, y, yp[W], event.flank, event.pair, event.k, event.gap)
     if m.scene.follow.exposures != 0:
         exposures.event(m, t, y, yp, event)
 

@@ -113,15 +113,14 @@ def set_joined(m: Model, k: int, material: int, joined: float) -> None:
 def set_branches(m: Model, k: int, material: int) -> None:
     """Work out the branch of a history's joined height.
 
-    A law that is integrated on demand keeps no branches, nor does an elastic contact. That of the stored energy
-    waits until the energy balance needs it.
+    A law that is integrated on demand keeps no branches, nor does an elastic contact. The stored energy keeps none: a
+    balance looks at it two or three times between turning points, which a branch of all its pieces does not pay for.
     """
     surface = m.scene.material[material]
     table = m.tables[surface.table_at :]
     if m.scene.branch_length > 0 and branch_length(table) > 0:
         joined = m.state.history[k].joined[material] + surface.gap_offset
         set_branch(table, joined, m.rows[force_branch(m, k, material) :])
-        m.rows[energy_branch(m, k, material) + B_PIECES] = 0.0
 
 
 def set_all_branches(m: Model) -> None:
@@ -134,13 +133,7 @@ def set_all_branches(m: Model) -> None:
 @compiled
 def force_branch(m: Model, k: int, material: int) -> int:
     """Index of a material's branch of the force law at a history's joined height, among the rows."""
-    return m.scene.branches_at + (2 * MATERIALS * k + material) * m.scene.branch_length
-
-
-@compiled
-def energy_branch(m: Model, k: int, material: int) -> int:
-    """Index of a material's branch of the stored energy there."""
-    return m.scene.branches_at + (2 * MATERIALS * k + MATERIALS + material) * m.scene.branch_length
+    return m.scene.branches_at + (MATERIALS * k + material) * m.scene.branch_length
 
 
 @compiled_once(FRICTION)
@@ -200,14 +193,8 @@ def _stretched(m: Model, k: int, gap: float, material: int) -> tuple[float, floa
         return 0.0, 0.0
     if stretch <= 0.0:
         return scale * h.adhered_energy[material], 0.0
-    table, joined = m.tables[surface.energy_at :], h.joined[material] + surface.gap_offset
-    if stretch < surface.stretch_limit and m.scene.branch_length > 0 and branch_length(table) > 0:
-        branch = m.rows[energy_branch(m, k, material) :]
-        if branch[B_PIECES] == 0.0:
-            set_branch(table, joined, branch)
-        e, de = branch_value(branch, stretch)
-    else:
-        e, de = stretched_energy(table, h.adhered_energy[material], gap + surface.gap_offset, joined)
+    table, offset = m.tables[surface.energy_at :], surface.gap_offset
+    e, de = stretched_energy(table, h.adhered_energy[material], gap + offset, h.joined[material] + offset)
     return scale * e, scale * de
 
 

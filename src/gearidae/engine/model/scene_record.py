@@ -196,7 +196,7 @@ SCENE: Final = record_type(
     ("potential_at", INT),  # potentials of these branches [index]
     ("slots", INT),  # histories per flank in use, a power of two [1]
     ("histories", INT),  # histories of all flanks [1]
-    ("branch_length", INT),  # numbers of a branch of the force law or stored energy; 0 if none is kept [1]
+    ("branch_length", INT),  # numbers of a branch of the force law; 0 if none is kept [1]
     ("branches_at", INT),  # where these branches begin among the rows [index]
     # nodes of an elastic contact
     ("nodes", INT),  # per pair; 0 for the asperity model [1]

@@ -5,8 +5,10 @@ length changes along the path of contact, so that it loses
 
 .. math:: \int \ell\, dq = \ell q - \int q \dot\ell\, dt .
 
-The last integral, the lag, is followed from step to step. The work of the changing radius is less by the same: it has
-been worked out as if nothing were lost until the turning point (`gearidae.engine.observers.balance`).
+The last integral, the lag, is followed over the intervals of the balance's quadrature, and up to the turning point.
+The work of the changing radius is less by the same: it has been worked out as if nothing were lost until the turning
+point (`gearidae.engine.observers.balance`). So what the lag is out by is a work of the radius that is booked as a loss,
+and leaves no residual.
 """
 
 from __future__ import annotations
@@ -36,9 +38,9 @@ def begin(m: Model, t: float) -> None:
     m.work.adhesion_lag_time = t
 
 
-@compiled(inline=True)
+@compiled
 def step(m: Model, t: float, y: Floats, w_rate: float) -> None:
-    """Follow the lags of closing contacts to an accepted time.
+    """Follow the lags of closing contacts to an accepted time, if they have not been yet.
 
     Parameters
     ----------
@@ -58,11 +60,23 @@ def step(m: Model, t: float, y: Floats, w_rate: float) -> None:
 
 
 @compiled_once(SOLVER)
-def event(m: Model, y: Floats, flank: int, pair: int, k: int, gap: float) -> None:
-    """Add the adhesion loss of a pair's asperities, before the turning point of a closing contact is noted."""
+def event(m: Model, t: float, y: Floats, w_rate: float, flank: int, pair: int, k: int, gap: float) -> None:
+    """Add the adhesion loss of a pair's asperities, before the turning point of a closing contact is noted.
+
+    Parameters
+    ----------
+    m, t, y, w_rate
+        As for `step`.
+    flank, pair, k : int
+        Flank and number of the pair, and index of its history.
+    gap : float
+        Of the pair.
+    """
     if m.state.history[k].direction > 0.0:
         return
-    e, losses = m.state.energy, joining_losses(m, k, y, gap)[0]
+    e, (losses, slopes) = m.state.energy, joining_losses(m, k, y, gap)
+    if is_on_path(m, flank, pair):
+        _follow_lag(m, k, flank, t - m.work.adhesion_lag_time, y, w_rate, losses, slopes)
     adhesion_lag, inside = m.state.history[k].adhesion_lag, path_position(m, flank, pair, y[PHASE])
     e.adhesion_loss += (
         contact_length(m, inside) * weighed(shares_of(m, flank, pair, inside), losses) - adhesion_lag
@@ -107,13 +121,21 @@ def _follow_pairs(m: Model, span: float, y: Floats, w_rate: float) -> None:
         gap = path_gap(m, flank, h.pair, y)
         if h.direction >= 0.0 or not in_reach(m, gap) or not is_on_path(m, flank, h.pair):
             continue
-        power = rate = 0.0
         losses, slopes = joining_losses(m, k, y, gap)
-        if losses[0] != 0.0 or losses[1] != 0.0 or losses[2] != 0.0:
-            loss = weighed_length(m, (flank, h.pair, y[PHASE]), y[W], w_rate, losses, slopes)
-            power, rate = loss.rate, loss.second_rate + opening_of(m, flank, y[V]) * loss.by_gap
-        h.adhesion_lag += integral(span, h.adhesion_lag_power, power, h.adhesion_lag_power_rate, rate)
-        h.adhesion_lag_power, h.adhesion_lag_power_rate = power, rate
+        _follow_lag(m, k, flank, span, y, w_rate, losses, slopes)
+
+
+@compiled(inline=True)
+def _follow_lag(
+    m: Model, k: int, flank: int, span: float, y: Floats, w_rate: float, losses: Shares, slopes: Shares
+) -> None:
+    """Follow the lag of a pair that closes over a span of time, for its losses per length and their slopes there."""
+    h, power, rate = m.state.history[k], 0.0, 0.0
+    if losses[0] != 0.0 or losses[1] != 0.0 or losses[2] != 0.0:
+        loss = weighed_length(m, (flank, h.pair, y[PHASE]), y[W], w_rate, losses, slopes)
+        power, rate = loss.rate, loss.second_rate + opening_of(m, flank, y[V]) * loss.by_gap
+    h.adhesion_lag += integral(span, h.adhesion_lag_power, power, h.adhesion_lag_power_rate, rate)
+    h.adhesion_lag_power, h.adhesion_lag_power_rate = power, rate
 
 
 @compiled

@@ -43,7 +43,7 @@ from gearidae.engine.laws.pairs import LOSING, book_losses_of_mesh, radius_power
 from gearidae.engine.model.addresses import model_at
 from gearidae.engine.model.state import DRIVE, LOAD, MATERIALS, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.kinetic import energy_of_speeds, kinetic_energy
-from gearidae.engine.observers.adhesion_loss import total_adhesion_lag
+from gearidae.engine.observers import adhesion_loss
 from gearidae.engine.observers.orbit_work import begin_orbit, book_orbit
 from gearidae.engine.pairs.mesh_error import pinion_acceleration, speed_and_error
 from gearidae.engine.pairs.orbit import follow_orbit
@@ -233,6 +233,7 @@ def _accumulate(m: Model, t: float, y: Floats, yp: Floats, now: bool) -> None:
     q.steps = 0
     q.time = t
     w, w_rate = y[W], yp[W]
+    adhesion_loss.step(m, t, y, w_rate)
     gear = y[PHASE] / m.scene.phase_rate
     speed, exchange, error = _accumulate_drive(m, h, t, y, yp)
     if resists(m, LOAD):
@@ -335,7 +336,7 @@ def _note_resistance(m: Model, t: float, gear: float, y: Floats, yp: Floats) -> 
 def note_changes(m: Model, y: Floats) -> tuple[float, float]:
     """Note the changes of the energies at a state, and return what adhesion loss and radius work have pending there."""
     e, now = m.state.energy, m.work.energy_now
-    (stored, pending), adhesion_lag = stored_energy(m, y), total_adhesion_lag(m)
+    (stored, pending), adhesion_lag = stored_energy(m, y), adhesion_loss.total_adhesion_lag(m)
     now.stored_change = stored - pending - e.start_stored
     now.shaft_change = _stored_in_shafts(m, y) - e.start_shafts
     now.kinetic_change = kinetic_energy(m, y) - e.start_kinetic
@@ -380,7 +381,7 @@ def _torque_slopes(m: Model, t: float, y: Floats) -> float:
     return total
 
 
-@compiled
+@compiled(inline=True)
 def _pinion(m: Model, y: Floats, yp: Floats) -> tuple[float, float, float]:
     """Travel of the pinion's base circle, its rate and the rate of that."""
     speed, e = speed_and_error(m, y)

@@ -345,7 +345,7 @@ def _model(s: Record, tables: Tables, scale: list[float]) -> Model:
     moving = MOTION if s.gear_inverse_mass > 0.0 else 2
     s.scale_at = tables.add(_scale(nodes, histories, scale, moving))
     rows = Tables()
-    s.branches_at = rows.add(np.zeros(2 * MATERIALS * int(s.branch_length) * histories))
+    s.branches_at = rows.add(np.zeros(MATERIALS * int(s.branch_length) * histories))
     s.node_rows_at = rows.add(np.zeros(int(s.node_row_length) * histories))
     s.error_weights_at = rows.add(np.zeros(int(s.states)))
     s.exposure_rows = ROWS.per_tooth(rubs=s.friction.flanks != 0)

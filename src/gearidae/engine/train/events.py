@@ -142,7 +142,8 @@ def _switch_mesh(tm: TrainModel, k: int, m: Model, t: float, y: Floats, out: Tra
         event = find_event(m, own, flank_of_history(m, history), m.state.history[history].pair, history)
         if event.touches or event.stretches or event.turns:
             if event.turns and tm.train[0].balance != 0:
-                adhesion_loss.event(m, own, event.flank, event.pair, event.k, event.gap)
+                w_rate = m.work.quadrature.gear_acceleration
+                adhesion_loss.event(m, time, own, w_rate, event.flank, event.pair, event.k, event.gap)
             count = take_event(m, time, own, event, few, count)
     if m.scene.law_switches != 0 and set_law_sides(m, time, own):
         note_law_jump(m, time, own, True)

@@ -2,8 +2,9 @@
 
 Most extremes of the force lie where a pair turns round, which is an event and hence an accepted time. What is left are
 maxima of adhesion, passed within a few steps. A parabola through three accepted forces shows whether one was passed
-that may be a record of the run. Only then the contact law is evaluated between these times. What may be a record since
-the last mesh exit is far more often passed; there the rates of the step's formula give the force, to some 1e-5 of it.
+that may be a record, of the run or since the last mesh exit. Only then the force is looked at between these times: the
+rates of the step's formula give it, to some 1e-5 of it, and with it where the extreme lies. What may be a record of the
+run by that is evaluated there by the contact law, once, as an extreme does not notice how far beside it that is.
 """
 
 from __future__ import annotations
@@ -25,8 +26,10 @@ from gearidae.laws.shafts import pinion_force
 
 NEAR_RECORD: Final = 0.1
 """Share of a record by which the parabola may miss it: it has been seen to be out by 3 % at loose tolerances."""
+NEARER_RECORD: Final = 0.01
+"""The same for the parabola through a force that the step's formula gives."""
 EVALUATIONS: Final = 3
-"""Number of forces evaluated between accepted times, at a maximum of adhesion that may be a record."""
+"""Number of forces evaluated between accepted times where no formula of the step gives them."""
 FLANKS: Final = 2
 _CLOSE: Final = 1e-3
 """Share of the span over which two evaluations are alike: the force changes by a millionth of its own."""
@@ -65,10 +68,10 @@ def note_corner(m: Model, point: Record, y: Floats) -> None:
     """Note the force at an event.
 
     The state at an event within a step is that of the step's polynomial, whose rates go over the corner that the force
-    may have there: where it may be a record the contact law is asked.
+    may have there: where it may be a record the contact law is asked. The error test has seen what the corner leaves.
     """
     force, (largest, smallest) = point.force, _records(m)
-    margin = NEAR_RECORD * abs(force)
+    margin = (NEARER_RECORD if m.work.adams.order_used > 1 else NEAR_RECORD) * abs(force)
     if force + margin > largest or force - margin < smallest:
         force = force_of_law(m, point.time, y)
     _note_force(m, point.time, force)
@@ -106,35 +109,45 @@ def _search_between(
     t, force, curvature = vertex(t0, f0, t1, f1, t2, f2)
     e = m.state.extremes
     record = e.largest_force if curvature < 0.0 else e.smallest_force
-    by_law = (force - record) * curvature <= NEAR_RECORD * abs(record * curvature)
-    if not by_law:
+    if not _is_near(force, record, curvature, NEAR_RECORD):
         largest, smallest = _records(m)
         # the parabola is out by less than what it adds to the accepted forces
         farthest = 2.0 * force - (max(f0, f1, f2) if curvature < 0.0 else min(f0, f1, f2))
         if smallest <= farthest <= largest:
             return
-        by_law = m.work.adams.order_used < 2
     if m.scene.nodes > 0:  # their deflections between accepted times are not known
         _note_force(m, t, force)
         return
+    by_law, least = m.work.adams.order_used < 2, _CLOSE * (now.time - before.time)
     for _ in range(EVALUATIONS if by_law else 1):
         if by_law:
             force = _force_between(m, before, last, now, t, between[0])
+            _note_force(m, t, force)
         else:
             adams.between(m.work.adams, t, between[0], between[1])
             force = force_of_motion(m, t, between[0], between[1], math.nan)
-        _note_force(m, t, force)
+        at, found = t, force
         if t - t0 > t2 - t:
             t0, f0 = t, force
         else:
             t2, f2 = t, force
-        if min(abs(t1 - t0), abs(t1 - t2)) < _CLOSE * (now.time - before.time):
-            return
+        if min(abs(t1 - t0), abs(t1 - t2)) < least:
+            break
         t, force, _ = vertex(t0, f0, t1, f1, t2, f2)
         if not before.time < t < now.time:
-            return
-    if not by_law:
-        _note_force(m, t, force)
+            t, force = at, found
+            break
+    if by_law:
+        return
+    if _is_near(force, record, curvature, NEARER_RECORD):
+        force = _force_between(m, before, last, now, t, between[0])
+    _note_force(m, t, force)
+
+
+@compiled(inline=True)
+def _is_near(force: float, record: float, curvature: float, share: float) -> bool:
+    """Whether an extreme that is bent so is beyond a record, or misses it by no more than a share of it."""
+    return bool((force - record) * curvature <= share * abs(record * curvature))
 
 
 @compiled
@@ -174,7 +187,7 @@ def _note_force(m: Model, t: float, force: float) -> None:
             note_since(m, flank, force)
 
 
-@compiled
+@compiled(inline=True)
 def note_since(m: Model, flank: int, force: float) -> None:
     """Note a force since the last mesh exit of a flank; one that is out of reach has none."""
     p = m.state.passage[flank]
