@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from gearidae import engine
@@ -57,14 +58,15 @@ def started_from(start: xr.Dataset | str | os.PathLike[str] | None, scene: Scene
 
 def _end_of(attributes: Mapping[Any, Any]) -> engine.Start:
     """Start of a run that goes on from the one with these attributes."""
-    from gearidae.archive.end_state import end_state_of
+    from gearidae.archive.end_state import end_state_of, end_verdict_of
 
     words, began = end_state_of(attributes)
     try:
         theirs = Scene.from_dict(json.loads(attributes["scene"]))
     except (TypeError, ValueError) as error:
         raise SceneError("start", "scene", f"is not readable ({error})") from None
-    return end_of_run(theirs, words, began)
+    start = end_of_run(theirs, words, began)
+    return replace(start, verdict=end_verdict_of(attributes)) if is_long_train(theirs) else start
 
 
 def end_of_run(scene: Scene, words: Words, began: float) -> engine.Start:
@@ -102,7 +104,7 @@ def started_attributes(start: engine.Start) -> dict[str, str]:
 
     parent = {
         "scene": json.dumps(start.scene.to_dict(), allow_nan=False),
-        **end_state_attributes(start.began, start.words),
+        **end_state_attributes(start.began, start.words, start.verdict),
     }
     return {"started_from": fingerprint(start.words), "parent": json.dumps(parent)}
 
