@@ -12,7 +12,7 @@ import gearidae as gd
 from gearidae.analysis.verdict.train import judge_train
 from gearidae.archive.totals import balance_of, imbalance_of
 from gearidae.archive.train import judged_view, train_dataset
-from gearidae.archive.train.variables import ALL, OF_AGEING
+from gearidae.archive.train.variables import ALL, OF_AGEING, OF_ASPERITIES
 from gearidae.scene import Scene
 
 SCENE = Scene.from_dict(chain(hubs=0.3))
@@ -37,7 +37,9 @@ def test_what_lies_along_shafts_and_meshes(ds):
     assert ds["mesh_ratio"].values.tolist() == [2.0, 2.0]
     assert ds["shaft_speed"].dims == ("shaft", "time")
     assert ds["mesh_force"].dims == ("mesh", "time")
-    for name, variable in ((name, ALL[name]) for name in ALL if name not in OF_AGEING):
+    optional = {*OF_AGEING, *OF_ASPERITIES}  # of joints that age, and of single asperities
+    assert not optional & {*ds.variables}
+    for name, variable in ((name, ALL[name]) for name in ALL if name not in optional):
         assert ds[name].dims == variable.dims, name
         assert ds[name].attrs["units"] == variable.units, name
         assert ds[name].attrs["long_name"], name

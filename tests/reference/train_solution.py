@@ -71,6 +71,7 @@ def solved(scene, samples=1501):
             "flank": np.array([Flank.DRIVE, Flank.DRIVE]),
             "pair": np.array([0, 0]),
             "gap_rate": np.full(2, np.nan),
+            "asperity": np.array([-1, -1]),
             "force": np.full(2, np.nan),
         },
         shaft_totals={
@@ -89,6 +90,8 @@ def solved(scene, samples=1501):
             "smallest_mesh_force_time": time[force.argmin(axis=1)],
             "smallest_separation": (half - column["u"]).min(axis=1),
             "mesh_exits": np.ones(len(a)),
+            "asperity_onsets": zero_mesh,
+            "asperity_detachments": zero_mesh,
             "adhesion_loss": zero_mesh,
             "damping_loss": damped,
             "film_loss": zero_mesh,

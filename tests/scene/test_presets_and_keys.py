@@ -41,7 +41,7 @@ SHAFT = (
     "inertia density teeth gears gears.NAME hub_friction hub_friction_rise hub_ageing_time hub_memory_length "
     "hub_radius hub_adhesion axial_load dimple_radius resistance viscous drag"
 )
-MESH = "driver driven angle phase offset coating surface"
+MESH = "driver driven angle phase offset coating surface contact contact.seed contact.radius_spread contact.asperities"
 
 
 @pytest.mark.parametrize("name", PRESETS)

@@ -250,10 +250,6 @@ REFUSED = {
         chain(contact={"bodies": "elastic", "asperity": "hertz"}),
         r"^contact\.bodies = elastic: cannot be combined with several meshes",
     ),
-    "discrete asperities": (
-        chain(contact={"bodies": "rigid", "roughness": "discrete"}),
-        r"^contact\.roughness = discrete: cannot be combined with several meshes",
-    ),
     "exposures": (
         chain(run={"duration": 1e-4, "exposures": 5}),
         r"^run\.exposures = 5: cannot be combined with several meshes",

@@ -38,6 +38,7 @@ from gearidae.archive.train.variables import (
     COORDINATES,
     MESH_TOTALS,
     OF_AGEING,
+    OF_ASPERITIES,
     SHAFT_TOTALS,
     TRAIN_SAMPLES,
 )
@@ -268,8 +269,12 @@ def _expected(ds: xr.Dataset, scene: dict[str, Any]) -> tuple[str, ...]:
     rows = tuple(name for kind in kinds_in(ds) for name in needed(kind))  # a user may drop them
     always: tuple[str, ...] = ()
     if is_train(ds):
-        sampled = tuple(name for name in TRAIN_SAMPLES if name not in OF_AGEING)
-        rows, always = (*SHAFT_TOTALS, *MESH_TOTALS, *rows), tuple(COORDINATES)
+        later = {*OF_AGEING, *OF_ASPERITIES}
+        sampled, totals = (
+            tuple(name for name in names if name not in later)
+            for names in (TRAIN_SAMPLES, (*SHAFT_TOTALS, *MESH_TOTALS))
+        )
+        rows, always = (*totals, *rows), tuple(COORDINATES)
     if "keep" not in ds.attrs:
         return (*always, "time", *sampled, *rows)
     try:

@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 
 from gearidae.archive.select import run_scene, swept_dims
 from gearidae.archive.select import runs as single_runs
+from gearidae.archive.train import judged_view
 from gearidae.arrays import Floats
 from gearidae.drawing.style import (
     NEGATIVE,
@@ -29,8 +30,9 @@ _FORCES = ("mesh_force", "force")
 def asperity_events(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     """Draw the force of the contacts over the last whole mesh cycle, and each asperity that joins or detaches in it.
 
-    A cycle lasts from a pair's entry on the drive flank to the next. Of a roller, or of a run without a whole cycle,
-    all of it is drawn. Marks stand at the recorded force, interpolated between samples.
+    A cycle lasts from a pair's entry on the drive flank to the next; of a train the judged mesh is drawn. Of a roller,
+    or of a run without a whole cycle, all of it is drawn. Marks stand at the recorded force, interpolated between
+    samples.
 
     Parameters
     ----------
@@ -52,6 +54,7 @@ def asperity_events(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
         raise SceneError(
             "dataset", f"runs along {dims[0]}", "must be a single run: select one, as --select does"
         )
+    ds = judged_view(ds)
     run = next(run for _, run in single_runs(ds))
     scene = run_scene(run)
     if not scene.contact.is_discrete:

@@ -9,7 +9,7 @@ import numpy as np
 from gearidae.errors import SceneError
 from gearidae.populations.flanks import flanks_digest, flanks_of
 from gearidae.populations.materials import covered_sides
-from gearidae.scene import Scene
+from gearidae.scene import Scene, require_gears
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -21,6 +21,7 @@ def population(scene: Scene) -> xr.Dataset:
     Parameters
     ----------
     scene : Scene
+        With a pair of gears, as ``scene.pair(NAME)`` of a train is, or a roller.
 
     Returns
     -------
@@ -34,7 +35,7 @@ def population(scene: Scene) -> xr.Dataset:
     Raises
     ------
     SceneError
-        If the scene has another contact model.
+        If the scene has another contact model, or several meshes.
 
     Notes
     -----
@@ -49,6 +50,8 @@ def population(scene: Scene) -> xr.Dataset:
             scene.contact.roughness,
             "must be discrete: statistical ones are no asperities of their own",
         )
+    if scene.roller is None:
+        scene = require_gears(scene)
     flanks = flanks_of(scene)
     counts = [flank.arc.size for flank in flanks]
     along = "arc" if scene.gears is not None else "x"

@@ -21,8 +21,16 @@ from gearidae.records.statistics import Statistics
 SHAFT_SAMPLES: Final = ("shaft_speed", "shaft_angle", "hub_load", "hub_load_angle", "hub_friction")
 """Samples of each shaft, shape (shafts, n): [rad/s], [rad], [N], the load's angle in the frame [rad], and the
 coefficient of friction of the hub [1]."""
-MESH_SAMPLES: Final = ("mesh_force", "transmission_error", "drive_gap", "coast_gap", "pairs_in_contact")
-"""Samples of each mesh, shape (meshes, n): the force with the damping of the mesh [N], lengths [m], and a count."""
+MESH_SAMPLES: Final = (
+    "mesh_force",
+    "transmission_error",
+    "drive_gap",
+    "coast_gap",
+    "pairs_in_contact",
+    "asperities_in_contact",
+)
+"""Samples of each mesh, shape (meshes, n): the force with the damping of the mesh [N], lengths [m], and two counts, the
+last of asperities that are followed one by one."""
 COMMON_SAMPLES: Final = ("drive_torque", "load_torque", "pin_load", "pin_friction")
 """Samples of the train, shape (n,): [N m], [N m], [N] and the coefficient of friction of the pin [1]."""
 WORKS_OF_SHAFTS: Final = ("hub_loss", "hub_sliding", "resistance_loss", "drag_loss")
@@ -44,6 +52,8 @@ MESH_TOTALS: Final = (
     "smallest_mesh_force_time",
     "smallest_separation",
     "mesh_exits",
+    "asperity_onsets",
+    "asperity_detachments",
     *WORKS_OF_MESHES,
 )
 """Totals of each mesh in SI units: ``work_in`` is the work of its driver, ``work_out`` that on its driven gear."""
@@ -61,8 +71,8 @@ ENERGIES: Final = (
 """Energies of the whole train [J]; ``load_work`` is what the dry resistance and the drags of the load have taken."""
 EVENT_COLUMNS: Final = (*Events.columns, "mesh", "shaft")
 """Columns of a table of events: those of a pair's, and behind them mesh and shaft."""
-_KEPT_OF_EVENTS: Final = ("time", "kind", "pair", "flank", "gap_rate", "force", "mesh", "shaft")
-_WHOLE: Final = ("kind", "pair", "flank", "mesh", "shaft")
+_KEPT_OF_EVENTS: Final = ("time", "kind", "pair", "flank", "gap_rate", "asperity", "force", "mesh", "shaft")
+_WHOLE: Final = ("kind", "pair", "flank", "asperity", "mesh", "shaft")
 REST_COLUMNS: Final = ("shaft", "begin", "end")
 
 
@@ -87,7 +97,7 @@ class TrainTotals(NamedTuple):
     @classmethod
     def none(cls, shafts: int, meshes: int) -> TrainTotals:
         """Totals of a run that has not begun: numbers are NaN, counts 0."""
-        counts = {"mesh_exits"}
+        counts = {"mesh_exits", "asperity_onsets", "asperity_detachments"}
         of_shafts, of_meshes = (
             {name: np.full(count, 0.0 if name in counts else np.nan) for name in names}
             for count, names in ((shafts, SHAFT_TOTALS), (meshes, MESH_TOTALS))
@@ -173,7 +183,7 @@ class TrainSolution:
         `SHAFT_SAMPLES` in the shape (shafts, n), `MESH_SAMPLES` in (meshes, n), and `COMMON_SAMPLES` in (n,).
     events : dict of str to ndarray, shape (m,)
         In the order of time: ``time`` [s], ``kind`` (an `EventKind`), ``mesh`` and ``shaft`` (numbers, -1 for none),
-        ``flank`` (a `Flank`), ``pair``, ``gap_rate`` [m/s] and ``force`` [N], as for `Events`.
+        ``flank`` (a `Flank`), ``pair``, ``gap_rate`` [m/s], ``asperity`` and ``force`` [N], as for `Events`.
     shaft_totals, mesh_totals : dict of str to ndarray, shape (shafts,) and (meshes,)
         Those of `SHAFT_TOTALS` and `MESH_TOTALS`.
     energy : dict of str to float

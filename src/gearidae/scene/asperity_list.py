@@ -180,7 +180,8 @@ def check_asperities(scene: Scene) -> None:
             contact.radius_spread,
             "must be 0 beside contact.asperities, which has radii",
         )
-    teeth = 1 if scene.gears is None else scene.gears.pinion_teeth
+    # of a train each mesh is checked as a pair
+    teeth = scene.gears.pinion_teeth if scene.gears is not None else math.inf if scene.roller is None else 1
     for row, asperity in enumerate(listed, 1):
         if asperity.tooth is not None and asperity.tooth >= teeth:
             raise SceneError(

@@ -170,9 +170,11 @@ def _inline(group: Group) -> str:
 
 
 def _plain(value: Any) -> str:
-    """Write a text, an SI number, or a list of numbers or of lists."""
+    """Write a text, an SI number, a list of numbers or of lists, or one of asperities."""
     if isinstance(value, str):
         return _text(value)
+    if isinstance(value, ListedAsperities):
+        return _columns(value)
     return f"[{', '.join(map(_plain, value))}]" if isinstance(value, tuple) else repr(value)
 
 

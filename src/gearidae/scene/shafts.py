@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import TYPE_CHECKING, Annotated, Any, Final, Self
 
 from pydantic import Field, create_model, model_validator
@@ -14,7 +15,7 @@ from gearidae.scene.joints import HubFriction, Joint, ageing_of
 from gearidae.scene.knots import Resistance
 from gearidae.scene.named_tables import NamedTables
 from gearidae.scene.quantity import Count, Quantity
-from gearidae.scene.surface import AgeingTime, Friction, FrictionRise, MemoryLength, Surface
+from gearidae.scene.surface import AgeingTime, Contact, Friction, FrictionRise, MemoryLength, Surface
 
 HUB_KEYS: Final = ("hub_radius", "hub_adhesion", "axial_load", "dimple_radius")
 """Keys of the hub of a shaft that a pair has for its pinion and its gear."""
@@ -109,8 +110,8 @@ class Shaft(Group):
         return {f"{name}.{gear}": teeth for gear, teeth in self.gears.items()}
 
 
-def _optional(name: str, table: type[Group], meaning: str) -> type[Group]:
-    """Make a table with the keys of another, none of which need be given."""
+def _optional(name: str, table: type[Group], meaning: str, only: Collection[str] = ()) -> type[Group]:
+    """Make a table with the keys of another, or only some of them, none of which need be given."""
     fields: dict[str, Any] = {
         key: (
             # the field's own annotations read what is given; None says that nothing is
@@ -118,6 +119,7 @@ def _optional(name: str, table: type[Group], meaning: str) -> type[Group]:
             None,
         )
         for key, field in table.model_fields.items()
+        if key in (only or table.model_fields)
     }
     made = create_model(name, __base__=Group, __module__=__name__, **fields)
     made.__doc__ = meaning
@@ -128,10 +130,17 @@ if TYPE_CHECKING:
     MeshKeys = Group
     MeshCoating = Group
     MeshSurface = Group
+    MeshContact = Group
 else:
     MeshKeys = _optional("MeshKeys", Mesh, "Keys of the table ``mesh``, which one mesh may repeat.")
     MeshCoating = _optional("MeshCoating", Coating, "Keys of the coating that one mesh has of its own.")
     MeshSurface = _optional("MeshSurface", Surface, "Keys of the surface that one mesh has of its own.")
+    MeshContact = _optional(
+        "MeshContact",
+        Contact,
+        "Which discrete asperities one mesh has; laws are those of the scene.",
+        ("seed", "radius_spread", "asperities"),
+    )
 
 
 class Meshing(MeshKeys):
@@ -154,9 +163,13 @@ class Meshing(MeshKeys):
     )
     coating: MeshCoating | None = Field(default=None, description="keys of the coating of this mesh alone")
     surface: MeshSurface | None = Field(default=None, description="keys of the surface of this mesh alone")
+    contact: MeshContact | None = Field(
+        default=None,
+        description="seed, spread of radii and list of the discrete asperities of this mesh alone",
+    )
 
     def own(self, table: str) -> dict[str, Any]:
-        """Keys that this mesh has in place of those of a table of the scene (mesh, coating, surface)."""
+        """Keys that this mesh has in place of those of a table of the scene (mesh, coating, surface, contact)."""
         if table == "mesh":
             return {key: value for key in Mesh.model_fields if (value := getattr(self, key)) is not None}
         group: Group | None = getattr(self, table)

@@ -18,6 +18,8 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Final
 
+import numpy as np
+
 from gearidae.errors import SceneError
 from gearidae.mesh.involute import Geometry, GeometryError, mesh_geometry
 from gearidae.scene.coating import Coating
@@ -26,7 +28,7 @@ from gearidae.scene.group import did_you_mean
 from gearidae.scene.named_tables import NamedTables
 from gearidae.scene.phases import Mount, with_phases
 from gearidae.scene.shafts import HUB_KEYS, Meshing, Shaft, friction_of
-from gearidae.scene.surface import Surface
+from gearidae.scene.surface import Contact, Surface
 
 if TYPE_CHECKING:
     from gearidae.scene.gears import Gears
@@ -36,6 +38,8 @@ MOST_SHAFTS: Final = 16
 MOST_MESHES: Final = 24
 _SAME_SIZE: Final = 1e-9
 """Relative difference of two base radii that come from products in another order."""
+_SEED_BITS: Final = 53
+"""Of the largest seed that a scene has."""
 _SAME_PLACE: Final = 1e-6
 """Relative error of a distance, and error of an angle [rad], with which a loop may close."""
 
@@ -83,6 +87,8 @@ class TrainMesh:
     mesh : Mesh
     coating : Coating
     surface : Surface
+    contact : Contact
+        With the seed of its own discrete asperities.
     face_width : float
         [m].
     angle : float
@@ -108,6 +114,7 @@ class TrainMesh:
     mesh: Mesh
     coating: Coating
     surface: Surface
+    contact: Contact
     face_width: float
     angle: float
     phase: float
@@ -231,7 +238,7 @@ def train_of(scene: Scene) -> Train:
         gear: number for number, (name, shaft) in enumerate(shafts.items()) for gear in shaft.gear_teeth(name)
     }
     drive, load = _named_shafts(scene, list(shafts))
-    bare = [_mesh(scene, name, entry, teeth, home) for name, entry in meshes.items()]
+    bare = [_mesh(scene, number, name, teeth, home) for number, name in enumerate(meshes)]
     _check_direction(list(shafts), bare, drive)
     _check_sizes(bare)
     placements, tree = _walk(list(shafts), bare, drive)
@@ -277,9 +284,11 @@ def _named_shafts(scene: Scene, names: list[str]) -> tuple[int, int]:
 
 
 def _mesh(
-    scene: Scene, name: str, entry: Meshing, teeth: Mapping[str, int], home: Mapping[str, int]
+    scene: Scene, number: int, name: str, teeth: Mapping[str, int], home: Mapping[str, int]
 ) -> TrainMesh:
     """Put the tables of a mesh together, and lay its two gears out."""
+    assert scene.meshes is not None
+    entry = scene.meshes[name]
     for side in ("driver", "driven"):
         gear = getattr(entry, side)
         if gear not in teeth:
@@ -290,6 +299,7 @@ def _mesh(
     mesh = _merged(f"meshes.{name}", Mesh, scene.mesh, entry.own("mesh"))
     coating = _merged(f"meshes.{name}.coating", Coating, scene.coating, entry.own("coating"))
     surface = _merged(f"meshes.{name}.surface", Surface, scene.surface, entry.own("surface"))
+    contact = _merged(f"meshes.{name}.contact", Contact, scene.contact, _own_asperities(scene, number, name))
     angle = _required(name, mesh, "pressure_angle")
     if mesh.driver_base_radius is None:
         module = _required(name, mesh, "module")
@@ -312,6 +322,7 @@ def _mesh(
         mesh=mesh,
         coating=coating,
         surface=surface,
+        contact=contact,
         face_width=_required(name, mesh, "face_width"),
         angle=0.0 if entry.angle is None else entry.angle,
         phase=0.0,
@@ -319,6 +330,19 @@ def _mesh(
         closes=False,
         residual=0.0,
     )
+
+
+def _own_asperities(scene: Scene, number: int, name: str) -> dict[str, Any]:
+    """Keys of the contact that a mesh has of its own; surfaces of a seed of the scene differ from mesh to mesh.
+
+    The first mesh has that of the seed itself, as a pair does.
+    """
+    assert scene.meshes is not None
+    own = scene.meshes[name].own("contact")
+    if number > 0 and scene.contact.is_discrete and "seed" not in own:
+        drawn = np.random.SeedSequence([scene.contact.seed, number]).generate_state(1, np.uint64)
+        own["seed"] = int(drawn[0]) >> (64 - _SEED_BITS)
+    return own
 
 
 def _merged(key: str, table: Any, common: Any, own: dict[str, Any]) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Container
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Final
 
@@ -51,11 +52,11 @@ def pair_of(scene: TrainScene, name: str) -> GearScene:
             initial=scene.initial.model_copy(update={"mesh_phase": mesh.phase, "gap": _gap(scene, mesh)}),
             surface=mesh.surface,
             coating=mesh.coating,
-            contact=scene.contact,
+            contact=mesh.contact,
             run=scene.run.model_copy(update={"judged": None}),
         )
     except SceneError as error:
-        key = _train_key(mesh, error.key, [*scene.shafts])
+        key = _train_key(mesh, error.key, [*scene.shafts], scene.meshes[name].own("contact"))
         raise SceneError(key, error.value, error.allowed) from error
 
 
@@ -113,10 +114,10 @@ def _torques(scene: TrainScene, mesh: TrainMesh) -> tuple[Drive, Load]:
     )
 
 
-def _train_key(mesh: TrainMesh, key: str, names: list[str]) -> str:
-    """Name the key of a train that a key of its pair comes from."""
+def _train_key(mesh: TrainMesh, key: str, names: list[str], own: Container[str]) -> str:
+    """Name the key of a train that a key of its pair comes from; `own` are those of the contact that the mesh has."""
     table, _, last = key.partition(".")
-    if table in ("coating", "surface"):
+    if table in ("coating", "surface") or (table == "contact" and last in own):
         return f"meshes.{mesh.name}.{key}"
     if mesh.mesh.pitch_error_rms > 0.0 and last in ("pinion_pitch_error", "gear_pitch_error"):
         last = "pitch_error_rms"
@@ -154,12 +155,6 @@ def check_train(scene: TrainScene) -> None:
             "contact.bodies",
             contact.bodies,
             "their nodes are laid out for one mesh",
-        ),
-        (
-            contact.is_discrete,
-            "contact.roughness",
-            contact.roughness,
-            "lists of asperities are those of one mesh",
         ),
         (run.exposures > 0, "run.exposures", run.exposures, "exposures are tables of one mesh"),
     ]

@@ -21,6 +21,7 @@ from gearidae.archive.train.variables import (
     EVENT_PLACES,
     MESH_TOTALS,
     OF_AGEING,
+    OF_ASPERITIES,
     OF_JUDGED,
     REST_LIST,
     SHAFT_TOTALS,
@@ -33,11 +34,13 @@ from gearidae.archive.variables import (
     EVENTS,
     EXTREMES,
     OF_SWEPT_RUN,
+    POPULATION_EVENTS,
     SAMPLES,
     STANDSTILL_LIST,
     TIME,
     run_label,
 )
+from gearidae.populations.flanks import flanks_digest, flanks_of
 from gearidae.records import Extremes, Words
 from gearidae.scene.joints import ages
 from gearidae.scene.judged import judged_mesh, judged_shaft
@@ -100,8 +103,13 @@ def train_dataset(
     variables[STANDSTILL_LIST.name] = ((), standstills_as_text(extremes), STANDSTILL_LIST.attributes)
     variables[REST_LIST.name] = ((), _rests(solution), REST_LIST.attributes)
     variables["reached"] = ((), solution.reached, OF_SWEPT_RUN["reached"].attributes)
+    left_out = () if scene.contact.is_discrete else OF_ASPERITIES
     return xr.Dataset(
-        {name: entry for name, entry in variables.items() if selection.holds(str(name))},
+        {
+            name: entry
+            for name, entry in variables.items()
+            if name not in left_out and selection.holds(str(name))
+        },
         coords={
             "time": ("time", solution.time, TIME.attributes),
             **run_label(scene),
@@ -115,6 +123,7 @@ def train_dataset(
             "contact_bodies": "rigid",
             "contact_bodies_reason": "of several meshes",
             "contact_roughness": scene.contact.roughness,
+            **_digests(scene),
             "judged_shaft": scene.train.shafts[judged_shaft(scene)].name,
             "judged_mesh": scene.train.meshes[judged_mesh(scene)].name,
             "drive_shaft": scene.train.shafts[scene.train.drive].name,
@@ -142,6 +151,14 @@ def coordinates(train: Train, judged: int) -> dict[str, Any]:
     }
 
 
+def _digests(scene: TrainScene) -> dict[str, str]:
+    """Digests of the discrete asperities of all meshes, in their order; see `flanks_digest`."""
+    if not scene.contact.is_discrete:
+        return {}
+    names = (mesh.name for mesh in scene.train.meshes)
+    return {"asperities_sha256": " ".join(flanks_digest(flanks_of(scene.pair(name))) for name in names)}
+
+
 def _two_shafts(scene: TrainScene, solution: TrainSolution, sampled: Sequence[str]) -> dict[Hashable, Any]:
     """Samples by the names that a pair has: of the judged shaft, and of the drive's."""
     numbers = {"gear": judged_shaft(scene), "pinion": scene.train.drive}
@@ -158,9 +175,11 @@ def _events(scene: TrainScene, solution: TrainSolution) -> dict[Hashable, Any]:
     count = len(events["time"])
     columns = {f"event_{name}": values for name, values in events.items()}
     columns["event_sam_fraction"] = np.full(count, scene.coating.sam_fraction)
+    teeth = np.array([mesh.geometry.pinion_teeth for mesh in scene.train.meshes])
+    columns["event_tooth"] = np.where(events["mesh"] >= 0, events["pair"] % teeth[events["mesh"]], -1)
     return {
         name: (("event",), np.asarray(columns[name]).astype(variable.dtype), variable.attributes)
-        for name, variable in {**EVENTS, **EVENT_PLACES}.items()
+        for name, variable in {**EVENTS, **POPULATION_EVENTS, **EVENT_PLACES}.items()
     }
 
 

@@ -7,7 +7,15 @@ from typing import Final
 
 import numpy as np
 
-from gearidae.archive.variables import EVENTS, EXTREMES, SAMPLES, STANDSTILL_LIST, Variable
+from gearidae.archive.variables import (
+    ASPERITY_COUNTS,
+    EVENTS,
+    EXTREMES,
+    POPULATION_EVENTS,
+    SAMPLES,
+    STANDSTILL_LIST,
+    Variable,
+)
 from gearidae.records.train_results import WORKS_OF_MESHES, WORKS_OF_SHAFTS
 
 SHAFT, MESH = ("shaft",), ("mesh",)
@@ -50,7 +58,14 @@ TRAIN_SAMPLES: Final[Mapping[str, Variable]] = {
         ),
         *(
             Variable(name, (*MESH, "time"), SAMPLES[name].units, SAMPLES[name].long_name)
-            for name in ("mesh_force", "transmission_error", "drive_gap", "coast_gap", "pairs_in_contact")
+            for name in (
+                "mesh_force",
+                "transmission_error",
+                "drive_gap",
+                "coast_gap",
+                "pairs_in_contact",
+                "asperities_in_contact",
+            )
         ),
         *(
             Variable(name, ("time",), SAMPLES[name].units, SAMPLES[name].long_name)
@@ -94,6 +109,7 @@ MESH_TOTALS: Final[Mapping[str, Variable]] = {
             "smallest_mesh_force_time",
             "smallest_separation",
             "mesh_exits",
+            *ASPERITY_COUNTS,
         )
         if name in EXTREMES
     },
@@ -143,6 +159,8 @@ ENERGY: Final[Mapping[str, Variable]] = {
         ("residual_bound", "what the residual stays below in a sound run"),
     )
 }
+OF_ASPERITIES: Final = ("asperities_in_contact", *ASPERITY_COUNTS, *POPULATION_EVENTS)
+"""What a run has only where its asperities are followed one by one."""
 EVENT_PLACES: Final[Mapping[str, Variable]] = {
     name: Variable(name, ("event",), "1", meaning, np.int64, comment="-1 where it belongs to none")
     for name, meaning in (
@@ -167,7 +185,7 @@ PARTS: Final[Mapping[str, tuple[str, ...]]] = {
     ),
     "energy_balance": (*WORKS_OF_SHAFTS, *WORKS_OF_MESHES, *ENERGY, *EFFICIENCIES, "efficiency"),
     "samples": (*TRAIN_SAMPLES, *TWO_SHAFTS),
-    "events": (*EVENTS, *EVENT_PLACES, REST_LIST.name, "impacts"),
+    "events": (*EVENTS, *POPULATION_EVENTS, *EVENT_PLACES, REST_LIST.name, "impacts"),
 }
 """What a run of a train leaves, by the groups of `gearidae.archive.output_selection`."""
 ATTRIBUTES: Final = ("judged_shaft", "judged_mesh", "drive_shaft")
@@ -180,6 +198,7 @@ ALL: Final[Mapping[str, Variable]] = {
     **EFFICIENCIES,
     **ENERGY,
     **EVENT_PLACES,
+    **POPULATION_EVENTS,
     REST_LIST.name: REST_LIST,
 }
 """By their names."""

@@ -23,6 +23,7 @@ _OF_SHAFTS = {
 """Variables along the shafts, and those of a pair that they are made of."""
 _OF_MESHES = (
     *("mesh_force", "transmission_error", "drive_gap", "coast_gap", "pairs_in_contact"),
+    "asperities_in_contact",
     *MESH_TOTALS,
 )
 

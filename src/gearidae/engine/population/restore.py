@@ -1,4 +1,4 @@
-"""Joined asperities taken back from a checkpoint."""
+"""Joined asperities taken back from a checkpoint, and the candidates that a run has from there on."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from gearidae.compiled import compiled_once
 from gearidae.engine.compiling import POPULATION
 from gearidae.engine.model.state import Floats, Model
 from gearidae.engine.pairs.tooth_pairs import list_known
-from gearidae.engine.population.candidates import choose_beside, forget
+from gearidae.engine.population.candidates import choose, choose_beside, forget
 from gearidae.engine.population.contact_point import pair_of
 from gearidae.engine.population.layout import REMEMBERED, column, flank_of
 
@@ -28,3 +28,17 @@ def take_joined(m: Model, y: Floats, joined: Floats) -> int:
         taken += contact.joined
         choose_beside(m, k, now.flank, now.number, now.gap, now.position, now.position)
     return taken
+
+
+@compiled_once(POPULATION)
+def choose_anew(m: Model, y: Floats) -> None:
+    """Choose the candidates of all pairs as `take_joined` does, with what is joined: they keep nothing of the way here.
+
+    A run that is taken up here goes on with the same candidates.
+    """
+    for k in range(m.scene.histories):
+        m.work.contact[k].known = m.work.contact[k].started = 0
+    for i in range(list_known(m, y)):
+        k = m.work.known[i]
+        now = pair_of(m, k, y)
+        choose(m, k, now.flank, now.number, now.gap, now.position, now.position)

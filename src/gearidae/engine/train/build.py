@@ -292,6 +292,7 @@ def _add_train(
     record.flanks = int(tm.meshes["flanks"].any())
     record.hubs = int(any(hub is not None and hub.largest * hub.radius > 0.0 for hub in hubs))
     record.ages = int(tm.joints["rise"].any())
+    record.discrete = int(any(problem.model.scene.population.flanks > 0 for problem in problems))
     record.balance, record.samples = int(run.balance), run.sample_count
     record.start, record.end = start, start + run.duration
     record.first_sample = first_sample(start, start + run.duration, run.sample_count)

@@ -207,8 +207,10 @@ def _carry_meshes(old: TrainProblem, new: TrainProblem) -> None:
     """Carry the contacts of all meshes over, and book by how much they store more with other materials."""
     before, after = np.zeros(old.energies.size), np.zeros(old.energies.size)
     write_stored(old.model, old.model.y, before)
+    coatings = [[mesh.coating for mesh in problem.scene.train.meshes] for problem in (old, new)]
     for k, (source, pair) in enumerate(zip(old.problems, new.problems, strict=True)):
-        carry_over(source, _own_state(old, k), pair, pair.start.copy())
+        others = coatings[0][k] != coatings[1][k]
+        carry_over(source, _own_state(old, k), pair, pair.start.copy(), population=others)
     follows, followed = new.scene.run.balance, old.scene.run.balance
     if follows != followed:
         for pair in new.problems:

@@ -13,6 +13,7 @@ from typing import Final
 from gearidae.arrays import Floats
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import TRAIN
+from gearidae.engine.events.asperity_events import record_switches, switch_asperities
 from gearidae.engine.events.cutoff import begin_within, note_within, watches_cutoff
 from gearidae.engine.events.events import mesh_guard
 from gearidae.engine.events.histories import accept
@@ -20,7 +21,7 @@ from gearidae.engine.events.law_switches import laws_chatter, note_law_jump, set
 from gearidae.engine.events.mesh_marks import cross_mark, crossed_mark, relief_step
 from gearidae.engine.events.pair_events import find_event, take_event
 from gearidae.engine.events.stops import next_stop, pass_knot
-from gearidae.engine.integrate.driver import LAW_CHATTER
+from gearidae.engine.integrate.driver import LAW_CHATTER, MANY_EVENTS
 from gearidae.engine.model.addresses import model_at
 from gearidae.engine.model.state import EMPTY, Model, W
 from gearidae.engine.observers import adhesion_loss
@@ -134,10 +135,16 @@ def _switch_mesh(tm: TrainModel, k: int, m: Model, t: float, y: Floats, out: Tra
     time, crossed = t / mesh.time_unit, crossed_mark(m, own)
     if crossed:
         count = cross_mark(m, time, own, few, count)
+        m.state.cycle_events = 0
         if not in_flight(m):
             # a pair that parts by its tip relief before the next step ends would not be seen
             tm.train[0].step = min(tm.train[0].step, relief_step(m, own) * mesh.time_unit)
-    for i in range(list_known(m, own)):
+    if m.scene.population.flanks != 0:
+        switch_asperities(m, own)
+        count, too_many = record_switches(m, time, own, few, count)
+        if too_many:
+            tm.train[0].error = MANY_EVENTS
+    for i in range(list_known(m, own) if m.scene.population.flanks == 0 else 0):
         history = m.work.known[i]
         event = find_event(m, own, flank_of_history(m, history), m.state.history[history].pair, history)
         if event.touches or event.stretches or event.turns:

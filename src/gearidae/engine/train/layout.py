@@ -109,6 +109,8 @@ MESH: Final = record_type(
     ("smallest", REAL),
     ("smallest_time", REAL),
     ("separation", REAL),  # smallest [m]
+    # of the search within a step
+    ("closing", REAL),  # rate of the transmission error where the part begins that is searched; scaled
     # of the last evaluation
     ("force", REAL),  # with damping [N]
     ("step_high", REAL),  # largest and smallest in the stages of the present step [N]
@@ -132,6 +134,7 @@ TRAIN: Final = record_type(
     ),  # pitches of the load's gear after which all phases are whole, and their histories in place
     ("balance", INT),  # 1 if works and losses are followed
     ("flanks", INT),  # 1 if the flanks of any mesh have friction
+    ("discrete", INT),  # 1 if any mesh has discrete asperities
     ("hubs", INT),  # 1 if the friction of any hub grows with its load
     ("ages", INT),  # 1 if the friction of any joint grows with time at rest
     ("start", REAL),  # [s]

@@ -27,11 +27,13 @@ from gearidae.engine.train.observe import (
     account,
     follow_forces,
     follow_shafts,
+    note_forces,
     observe_train,
     shaft_angle,
     wants_polynomial,
 )
 from gearidae.engine.train.rest import any_held
+from gearidae.engine.train.search import choose_all, first_root, guard_at, locate
 from gearidae.formulas.interpolation import cubic
 from gearidae.formulas.roots import HALVINGS, zero_of_cubic
 
@@ -41,41 +43,10 @@ LEAST_STEP: Final = 1e-15
 """Of the time, or of the fastest time of the meshes."""
 LAST: Final = 1e-10
 """Of a step: what would be left of the way to a stop is taken with it."""
-CLOSE: Final = 1e-15
-"""Of the time: a root is known to that."""
-SEARCHES: Final = 100
 LOOKS: Final = 2001
 """Times at which every run is looked at to be judged, whatever is sampled: enough for mean speeds and their spread.
 
 Where shafts come to rest or turn round is known besides."""
-
-
-@compiled
-def locate(tm: TrainModel, h: float) -> float:
-    """Share of a step, whose polynomial is known, just behind the first root of the guard that is found in it."""
-    n, train, between = 2 * len(tm.shafts), tm.train[0], tm.between
-    low, high = 0.0, 1.0
-    at_low = train.guard
-    state_at(tm, 1.0, n, between)
-    at_high = train_guard(tm, train.time + h, between, False)
-    least = CLOSE * max(train.time, train.tau) / h
-    side = 0
-    for i in range(SEARCHES):
-        if high - low <= least:
-            break
-        # guards of several kinds meet in the least of them: false position, and the middle now and then
-        share = high - at_high * (high - low) / (at_high - at_low)
-        if i % 3 == 2 or not low < share < high:
-            share = 0.5 * (low + high)
-        state_at(tm, share, n, between)
-        value = train_guard(tm, train.time + share * h, between, False)
-        if value > 0.0:
-            at_high *= 0.5 if side > 0 else 1.0
-            low, at_low, side = share, value, 1
-        else:
-            at_low *= 0.5 if side < 0 else 1.0
-            high, at_high, side = share, value, -1
-    return high
 
 
 @compiled
@@ -250,6 +221,9 @@ def advance_train(tm: TrainModel, out: TrainOutput, most: int) -> None:
             return
         if train.fresh != 0:
             motion(tm, train.time, y, tm.rates[0])
+            if train.discrete != 0:
+                note_forces(tm, train.time)  # they jump where asperities have joined or detached
+                choose_all(tm, y)
             train.guard, train.fresh = train_guard(tm, train.time, y, True), 0
         stop = next_train_stop(tm)
         h, after = take_step(tm, stop)
@@ -257,16 +231,19 @@ def advance_train(tm: TrainModel, out: TrainOutput, most: int) -> None:
             train.error = UNDERFLOW
             return
         time = stop if h == stop - train.time else train.time + h
-        value, share = train_guard(tm, time, new, True), 1.0
-        root, due = value < 0.0, next_due(tm)[0]
-        seen = wants_polynomial(tm)
-        if (root and train.guard > 0.0) or due <= time or seen:
+        waits = train.guard > 0.0
+        searched = waits and train.discrete != 0
+        value, share = 1.0 if searched else train_guard(tm, time, new, True), 1.0
+        root, due, seen = value < 0.0, next_due(tm)[0], wants_polynomial(tm)
+        if searched or (waits and root) or due <= time or seen:
             make_polynomial(tm, h)
-            if root and train.guard > 0.0:
-                share = locate(tm, h)
-                if share < 1.0:
-                    time = train.time + share * h
-                    state_at(tm, share, y.size, new)
+            if searched:
+                root, share, value = first_root(tm, h)
+            elif waits and root:
+                share = locate(tm, h, 0.0, train.guard, 1.0, guard_at(tm, h, 1.0))
+            if share < 1.0:
+                time = train.time + share * h
+                state_at(tm, share, y.size, new)
             if not _sample_step(tm, time, h, out):
                 return  # the step is taken again with room for its samples
             if seen:

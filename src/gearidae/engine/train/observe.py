@@ -7,6 +7,7 @@ from typing import Final
 
 from gearidae.arrays import Floats
 from gearidae.compiled import compiled
+from gearidae.engine.laws.discrete import asperities_joined
 from gearidae.engine.laws.pairs import stored_energy
 from gearidae.engine.model.addresses import model_at
 from gearidae.engine.model.state import PHASE, U
@@ -56,7 +57,9 @@ def observe_train(tm: TrainModel, t: float, y: Floats, row: Floats) -> None:
         drive, coast, touching = flank_gaps(m, tm.own)
         row[at], row[at + 1] = mesh.force, mesh.error
         row[at + 2], row[at + 3] = drive * mesh.length_unit, coast * mesh.length_unit
-        row[at + 4] = touching
+        row[at + 4], row[at + 5] = touching, 0.0
+        if m.scene.population.flanks != 0:
+            row[at + 5], row[at + 4] = asperities_joined(m)
         at += _MESH_COLUMNS
     shaft = tm.shafts[train.load]
     resistance = train.load_limit * shaft.slip

@@ -25,6 +25,7 @@ from gearidae.engine.train.loop import finish_train_step, has_room, has_room_for
 from gearidae.engine.train.motion import motion
 from gearidae.engine.train.observe import note_forces
 from gearidae.engine.train.rest import any_held
+from gearidae.engine.train.search import begin_part, choose_all, first_dip
 
 
 @compiled
@@ -38,6 +39,18 @@ def _guard(tm: TrainModel, t: float, y: Floats) -> float:
 
 
 @compiled
+def _begin_search(tm: TrainModel, t: float, y: Floats) -> None:
+    """Note the asperities at a state from which the next step goes on."""
+    train_guard(tm, t, y, False)
+    begin_part(tm, y)
+
+
+@compiled
+def _dip(tm: TrainModel, span: float, y: Floats) -> float:
+    return first_dip(tm, span, y)
+
+
+@compiled
 def _write(tm: TrainModel, due: float, of_looks: bool, y: Floats, out: TrainOutput) -> None:
     write_due(tm, due, of_looks, y, out)
 
@@ -47,6 +60,8 @@ def _begin(tm: TrainModel) -> float:
     """Evaluate the motion at the accepted time, and return the time of the coming stop [s]."""
     train = tm.train[0]
     motion(tm, train.time, tm.y, tm.rates[0])
+    if train.discrete != 0:
+        choose_all(tm, tm.y)
     train.fresh = 0
     return next_train_stop(tm)
 
@@ -88,6 +103,7 @@ class PortableDriver:
         self._ida: Any = None
         self._history: dict[str, Any] = {}
         self._stop = self._time = math.inf
+        self._dip_time = math.inf  # of an asperity between two steps, to stop at
         self._trail: Trail | None = None
 
     def advance(self, out: TrainOutput, most: int, take: Callable[[], None]) -> None:
@@ -109,8 +125,19 @@ class PortableDriver:
     def _start(self) -> None:
         """Start a fresh IDA at the accepted time: forces and directions have changed there."""
         tm = self._tm
-        train, n, size = tm.train[0], 2 * len(tm.shafts), tm.y.size
-        self._stop = _begin(tm)
+        train = tm.train[0]
+        self._stop, self._dip_time = _begin(tm), math.inf
+        time = float(train.time)
+        self._make(min(0.1 * math.sqrt(self._rtol) * float(train.tau), 0.5 * (self._stop - time)))
+        self._trail = Trail(time, tm.y, tm.rates[0])
+        self._ida.init_step(time, tm.y.copy(), tm.rates[0].copy())
+        if train.discrete:
+            _begin_search(tm, time, tm.y)
+
+    def _make(self, first_step: float) -> None:
+        """Make an IDA with fresh callbacks: scikit-sundae keeps the events on the function that it is given."""
+        tm = self._tm
+        n, size = 2 * len(tm.shafts), tm.y.size
         # what scikit-sundae passes is read-only, which is another type to numba
         state, rates, moved = np.empty(size), np.empty(size), np.empty(size)
         small = 1e-5 / (tm.weights * self._rtol)
@@ -145,19 +172,26 @@ class PortableDriver:
             num_events=1,
             rtol=0.0,
             atol=self._tolerance,
-            first_step=min(0.1 * math.sqrt(self._rtol) * float(train.tau), 0.5 * (self._stop - train.time)),
+            first_step=first_step,
             max_step=longest if longest < math.inf else 0.0,
             max_num_steps=10_000_000,
         )
-        self._trail = Trail(float(train.time), tm.y, tm.rates[0])
-        self._ida.init_step(float(train.time), tm.y.copy(), tm.rates[0].copy())
+
+    def _stop_at_dip(self, share: float) -> None:
+        """Take the last step anew, and stop at a share of it, where an asperity dips: its root is then found."""
+        assert self._trail is not None
+        time, y, yp = self._trail.last
+        self._dip_time = time + share * (self._time - time)
+        self._make(0.25 * (self._dip_time - time))
+        self._ida.init_step(time, y, yp)
 
     def _step(self) -> bool:
         """Go on to the end of the next step, a stop or a root; whether it is a root."""
         tm = self._tm
         train = tm.train[0]
         try:
-            result = self._ida.step(float(train.end), method="onestep", tstop=self._stop)
+            stop = min(self._stop, self._dip_time)
+            result = self._ida.step(float(train.end), method="onestep", tstop=stop)
         except KeyError as error:  # a status of SUNDIALS that scikit-sundae has no name for
             train.error = min(int(error.args[0]), -1)
             return False
@@ -167,6 +201,13 @@ class PortableDriver:
             return False
         tm.new[:], self._time = result.y, float(result.t)
         assert self._trail is not None
+        if train.discrete:
+            share = self._first_dip()
+            if share < 1.0:
+                self._stop_at_dip(share)
+                return self._step()
+        if self._time >= self._dip_time:
+            self._dip_time = math.inf
         self._trail.add(self._time, result.y, result.yp)
         if flag == ROOT:
             # drop the history, which would be copied whole at every further step
@@ -175,6 +216,21 @@ class PortableDriver:
             return True
         # below zero for the whole step: IDA looks for changes of sign only
         return bool(_guard(tm, self._time, tm.new) < 0.0)
+
+    def _first_dip(self) -> float:
+        """Share of the last step at which an asperity dips below its guard and comes back; 2 if none does.
+
+        It is searched on from the end of the step, and not where the step has been taken anew for a dip.
+        """
+        tm = self._tm
+        assert self._trail is not None
+        share, time = 2.0, self._trail.last[0]
+        if self._dip_time == math.inf and self._time > time:
+            _guard(tm, self._time, tm.new)
+            share = _dip(tm, self._time - time, tm.new)
+        if not share < 1.0:
+            _begin_search(tm, self._time, tm.new)
+        return share
 
     def _sample(self, out: TrainOutput, take: Callable[[], None]) -> None:
         """Write the samples up to the end of the step."""

@@ -317,6 +317,10 @@ def _totals(problem: TrainProblem) -> TrainTotals:
         "smallest_mesh_force_time": tm.meshes["smallest_time"].copy(),
         "smallest_separation": tm.meshes["separation"].copy(),
         "mesh_exits": np.array([int(p.model.state.extremes.mesh_exits) for p in problem.problems]),
+        **{
+            name: np.array([int(p.model.state[name]) for p in problem.problems])
+            for name in ("asperity_onsets", "asperity_detachments")
+        },
         "adhesion_loss": adhesion.copy(),
         "damping_loss": of_meshes[:, 0].copy(),
         "film_loss": of_meshes[:, 1].copy(),
