@@ -68,6 +68,19 @@ EXPECTED = [
     ({}, 2, (4598.397598, 1149.646831, None)),
 ]
 BACKENDS = ["native", "sksundae"]
+
+
+def in_both(cases, also):
+    """Each case with the native driver, and with the portable one, by hand those that are not in `also`."""
+    return [
+        pytest.param(
+            *case, backend, marks=pytest.mark.by_hand if backend != "native" and case[0] not in also else ()
+        )
+        for case in cases
+        for backend in BACKENDS
+    ]
+
+
 HALF = {"run.duration": 60e-6, "run.samples": 61, "run.rtol": 1e-9}
 
 
@@ -88,8 +101,9 @@ def runs():
 # -- numbers of an independent integrator ----------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("backend", BACKENDS)
-@pytest.mark.parametrize(("changes", "sample", "expected"), EXPECTED)
+@pytest.mark.parametrize(
+    ("changes", "sample", "expected", "backend"), in_both(EXPECTED, also=(ONE_OF_EACH, RUNOUT))
+)
 def test_motion_is_that_of_an_independent_integrator(runs, changes, sample, expected, backend):
     """To the digits that are given: of speeds a few tolerances, of forces half of the last digit."""
     samples = runs(changes, backend).samples
@@ -100,21 +114,23 @@ def test_motion_is_that_of_an_independent_integrator(runs, changes, sample, expe
             assert samples[name][sample] == pytest.approx(value, rel=allowed), name
 
 
-@pytest.mark.parametrize("backend", BACKENDS)
 @pytest.mark.parametrize(
-    ("changes", "samples"),
-    [
-        (ONE_OF_EACH, {2: {0: 1.9438e-12, 1: 3.43808e-7}, 3: {1: 3.44166e-7}}),
-        ({}, {2: {0: 1.97517e-7, 1: 1.46285e-7}}),
-        (
-            RUNOUT,
-            {
-                1: {0: 3.43326e-7},
-                2: {0: 1.97423e-7, 1: 1.46214e-7},
-                3: {1: 2.10086e-7, 2: 1.33914e-7},
-            },
-        ),
-    ],
+    ("changes", "samples", "backend"),
+    in_both(
+        [
+            (ONE_OF_EACH, {2: {0: 1.9438e-12, 1: 3.43808e-7}, 3: {1: 3.44166e-7}}),
+            ({}, {2: {0: 1.97517e-7, 1: 1.46285e-7}}),
+            (
+                RUNOUT,
+                {
+                    1: {0: 3.43326e-7},
+                    2: {0: 1.97423e-7, 1: 1.46214e-7},
+                    3: {1: 2.10086e-7, 2: 1.33914e-7},
+                },
+            ),
+        ],
+        also=({},),
+    ),
 )
 def test_pairs_share_the_force_as_their_teeth_stand(changes, samples, backend):
     states = states_at(REALISTIC.replace(changes), list(samples), backend=backend)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from contextlib import closing
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -10,7 +13,9 @@ from tests.reference.trains import chain
 import gearidae as gd
 from gearidae.archive.train.variables import OF_JUDGED
 from gearidae.cli import main
+from gearidae.records.train_results import TrainSolution
 from gearidae.runs import batch
+from gearidae.runs.run_cache import RunCache
 from gearidae.runs.run_result import solve_and_leave
 from gearidae.scene import Scene, dump_case
 
@@ -167,3 +172,20 @@ def test_the_command_line_sweeps_a_train(scene, tmp_path, capfd):
     assert "2 runs" in capfd.readouterr().out
     assert main(["info", str(path)]) == 0
     assert gd.open_archive(path).sizes["meshes_second_coating_sam_fraction"] == 2
+
+
+@pytest.mark.parametrize("count", [0, 1, 5])
+def test_a_run_is_kept_with_as_many_samples_as_it_has(scene, tmp_path, count):
+    """Studies run trains without any."""
+    rows = np.arange(6.0 * count).reshape(6, count)
+    samples = {"shaft_speed": rows[:3], "mesh_force": rows[3:5], "drive_torque": rows[5]}
+    none = TrainSolution.none(["a", "b", "c"], ["first", "second"], "finished", "")
+    run = replace(none, time=np.arange(float(count)), samples=samples)
+    with closing(RunCache(tmp_path / "a.nc", scene, "native")) as cache:
+        cache.store(scene, run)
+        taken = cache.take(scene)
+    assert taken is not None
+    assert list(taken[0].samples) == list(samples)
+    np.testing.assert_array_equal(taken[0].time, run.time)
+    for name, values in samples.items():
+        np.testing.assert_array_equal(taken[0].samples[name], values)

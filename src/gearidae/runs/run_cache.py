@@ -245,7 +245,7 @@ def _of_train(solution: TrainSolution, judged: dict[str, Any]) -> tuple[dict[str
             for name in _TRAIN_TOTALS
         },
     }
-    rows = [values.reshape(-1, solution.time.size) for values in samples.values()]
+    rows = [np.atleast_2d(values) for values in samples.values()]
     return header, {
         "samples": np.concatenate([solution.time[None], *rows]),
         **{name: _table(getattr(solution, name)) for name in _TRAIN_ROWS},
@@ -262,15 +262,17 @@ def _train_rebuilt(
 ) -> tuple[TrainSolution, dict[str, Any]]:
     """Make a run of a train of its header and its tables."""
     none = TrainSolution.none(header["shafts"], header["meshes"], "", "")
-    time, *columns = tables.get("samples", np.empty((1, 0)))
+    counts: dict[str, int] = header["columns"]
+    rows = 1 + sum(max(count, 1) for count in counts.values())
+    time, *columns = tables.get("samples", np.empty((rows, 0)))
     left, samples = iter(columns), {}
-    for name, count in header["columns"].items():
+    for name, count in counts.items():
         samples[name] = np.array([next(left) for _ in range(count)]) if count else next(left).copy()
     made: dict[str, Any] = {}
     for name in _TRAIN_ROWS:
         kinds = {key: column.dtype for key, column in getattr(none, name).items()}
-        rows = zip(sorted(kinds), tables.get(name, np.empty((len(kinds), 0))), strict=True)
-        made[name] = {key: row.astype(kinds[key]) for key, row in rows}
+        parts = zip(sorted(kinds), tables.get(name, np.empty((len(kinds), 0))), strict=True)
+        made[name] = {key: part.astype(kinds[key]) for key, part in parts}
     totals: dict[str, Any] = {
         name: {key: np.array(values) for key, values in header[name].items()} for name in _TRAIN_TOTALS
     }
