@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from gearidae.analysis.verdict.free_train import FreeTrain
 from gearidae.archive.train.work import MESH_LOSSES
 from gearidae.arrays import Floats
+from gearidae.engine.train.free_train import FreeTrain
 from gearidae.records import RUN_PARTS, EventKind, Extremes
 from gearidae.records.standing import HALF_PITCH, SETTLED_WITHIN, Followed, Holding, stands, turns_round
 from gearidae.records.train_results import NO_TRACK
@@ -110,7 +110,7 @@ def _judgement(scene: TrainScene, solution: TrainSolution) -> tuple[Extremes, tu
     }
     if motion.time.size < 2:
         return Extremes(numbers), ()
-    free = FreeTrain(scene)
+    free = FreeTrain(scene, solution.start)
     numbers |= _back(motion, free)
     standstills = list(_standstills(motion, free))
     ended = [still.end for still in standstills if not math.isnan(still.end)]
@@ -217,9 +217,7 @@ def _judged(
     if not together and turns_round(zero, end, ahead, _followed(motion, free, earlier, end)):
         return None
     sampled_times = np.linspace(zero, end, _LOOKS)
-    beyond = np.array(
-        [abs(free.driving(t, position, 0.0)) - free.dry(t, position, 0.0) for t in sampled_times]
-    )
+    beyond = np.array([abs(free.push(t, position, 0.0)) - free.dry(t, position, 0.0) for t in sampled_times])
     rest = sum(max(min(stop, end) - max(start, zero), 0.0) for start, stop in motion.rests)
     return _Standstill(
         begin=zero,
@@ -305,20 +303,20 @@ def _holders(
     for number in solution.flanks_held:
         holding |= Holding.FLANK_FRICTION
         held.append(f"flank friction of {train.meshes[number].name}")
-    for name in _adhering(scene, solution):
+    for name in _adhering(scene, solution, free.dry_load(motion.end, motion.angle[-1])):
         holding |= Holding.ADHESION
         held.append(f"adhesion in {name}")
     return holding, tuple(held)
 
 
-def _adhering(scene: TrainScene, solution: TrainSolution) -> list[str]:
+def _adhering(scene: TrainScene, solution: TrainSolution, dry_load: float) -> list[str]:
     """Names of the meshes that drive a shaft at which more torque is missing than its friction can hold."""
     train, track = scene.train, solution.track
     late = track.time >= solution.start + RUN_PARTS[2] * (solution.reached - solution.start)
     forces = track.samples["mesh_force"][:, late].mean(axis=1)
     loads = track.samples["hub_load"][:, late].mean(axis=1)
     missing = []
-    for number, (name, shaft) in enumerate(scene.shafts.items()):
+    for number, shaft in enumerate(scene.shafts.values()):
         mine = [k for k, mesh in enumerate(train.meshes) if mesh.b == number]
         if not mine or not any(solution.mesh_totals[MESH_LOSSES[0]][k] > 0.0 for k in mine):
             continue
@@ -329,7 +327,7 @@ def _adhering(scene: TrainScene, solution: TrainSolution) -> list[str]:
             if mesh.a == number
         )
         limit = shaft.resistance + (0.0 if shaft.hub is None else shaft.hub.torque(float(loads[number])))
-        limit += scene.load.torque if name == train.shafts[train.load].name else 0.0
+        limit += dry_load if number == train.load else 0.0
         if arrives - leaves - limit > _NOT_PASSED_ON * abs(arrives):
             missing += [train.meshes[k].name for k in mine]
     return missing
