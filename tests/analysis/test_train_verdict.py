@@ -11,10 +11,10 @@ from tests.reference.trains import chain, tables
 
 import gearidae as gd
 from gearidae.analysis.verdict import outcomes
-from gearidae.analysis.verdict.free_train import FreeTrain, knots_at
 from gearidae.analysis.verdict.headline import headline
 from gearidae.analysis.verdict.train import judge_train
 from gearidae.archive.train import train_dataset
+from gearidae.engine.train.free_train import FreeTrain
 from gearidae.scene import Scene
 
 REST = {"gear_speed": 0.0, "gap": "36 nm", "mesh_phase": 0.3}
@@ -70,6 +70,7 @@ def test_free_gears_wait_for_a_ramp_and_stop_where_it_falls():
     """Held until 4 M = 3e-11 N m; up, along and down again, symmetric about the top."""
     ramp = {"schedule": [[0.0, 0.0], [1e-3, 1.5e-11], [2e-3, 0.0]]}
     scene = Scene.from_dict(chain(drive=ramp, load={"torque": 3e-11}, initial=REST))
+    scene = scene.replace({"run.duration": 4e-3})
     free = FreeTrain(scene)
     times = np.linspace(0.0, 4e-3, 401)
     where = free.positions(0.0, 0.0, times)
@@ -87,10 +88,25 @@ def test_free_gears_wait_for_a_ramp_and_stop_where_it_falls():
     assert free.positions(0.0, 0.0, times[-1:])[0] == pytest.approx(where[-1], rel=1e-6)
 
 
-def test_a_schedule_repeats():
-    scene = Scene.from_dict(chain(drive={"schedule": {"knots": [[0.0, 0.0], [1.0, 2.0]], "repeat": 2.0}}))
-    at = knots_at(scene.drive.schedule)
-    assert [at(t) for t in (0.5, 1.0, 1.5, 2.5)] == pytest.approx([1.0, 2.0, 1.0, 1.0])
+def test_the_torques_of_free_gears_are_those_of_the_scene_at_any_time():
+    """Schedule that repeats, harmonics of time and of the angle, held speed and drags, written down by hand."""
+    drive = {
+        "schedule": {"knots": [[0.0, 0.0], [1e-3, 2e-12]], "repeat": 2e-3},
+        "harmonic": [
+            {"amplitude": 1e-12, "frequency": 300.0, "phase": 0.4},
+            {"amplitude": 5e-13, "order": 3},
+        ],
+    }
+    load = {"torque": 1e-12, "schedule": [[0.0, 0.0], [4e-3, 3e-12]], "viscous": 2e-16, "drag": 8e-18}
+    scene = Scene.from_dict(chain(drive=drive, load=load)).replace({"run.duration": 5e-3})
+    free = FreeTrain(scene)
+    for t, angle, speed in ((5e-4, 0.2, 10.0), (1.5e-3, -0.7, -3.0), (3.2e-3, 1.1, 0.0)):
+        ramp = 2e-12 * (1.0 - abs(t % 2e-3 - 1e-3) / 1e-3)
+        turned = 4.0 * angle
+        wave = 1e-12 * np.cos(2.0 * np.pi * 300.0 * t + 0.4) + 5e-13 * np.cos(3.0 * turned)
+        drags = (2e-16 + 8e-18 * abs(speed)) * speed
+        assert free.push(t, angle, speed) == pytest.approx(4.0 * (ramp + wave) - drags, rel=1e-9, abs=0.0)
+        assert free.dry(t, angle, speed) == pytest.approx(1e-12 + 3e-12 * t / 4e-3, rel=1e-12, abs=0.0)
 
 
 def test_a_train_that_hubs_hold_sticks_by_their_names():

@@ -25,9 +25,9 @@ from gearidae.analysis.verdict.chain import (
     chain_of,
     evenly,
 )
-from gearidae.analysis.verdict.free_train import FreeTrain
 from gearidae.archive.train.work import MESH_LOSSES
 from gearidae.arrays import Floats
+from gearidae.engine.train.free_train import FreeTrain
 from gearidae.laws.frictions import friction_laws_of
 from gearidae.laws.law import LOAD
 from gearidae.laws.shaft.dry_load import DRY_LOAD
@@ -153,7 +153,7 @@ class _Motion:
         since = max(zero.time, self.begin)
         beyond = np.array(
             [
-                abs(free.driving(t, zero.angle, 0.0)) - free.dry(t, zero.angle, 0.0)
+                abs(free.push(t, zero.angle, 0.0)) - free.dry(t, zero.angle, 0.0)
                 for t in np.linspace(since, end, _LOOKS)
             ]
         )
@@ -220,7 +220,7 @@ def _judgement(
     }
     if motion.time.size < 2:
         return Extremes(numbers), (), None
-    free = FreeTrain(scene)
+    free = FreeTrain(scene, solution.start)
     turn = _turn(motion, free)
     numbers |= _back(motion, turn)
     found = list(_standstills(motion, free))
@@ -460,13 +460,13 @@ def _holders(
     for number in solution.flanks_held:
         holding |= Holding.FLANK_FRICTION
         held.append(f"flank friction of {train.meshes[number].name}")
-    for name in _adhering(scene, solution):
+    for name in _adhering(scene, solution, free.dry_load(motion.end, motion.angle[-1])):
         holding |= Holding.ADHESION
         held.append(f"adhesion in {name}")
     return holding, tuple(held)
 
 
-def _adhering(scene: TrainScene, solution: TrainSolution) -> list[str]:
+def _adhering(scene: TrainScene, solution: TrainSolution, dry_load: float) -> list[str]:
     """Names of the meshes that drive a shaft at which more torque is missing than its friction can hold."""
     train, track = scene.train, solution.track
     late = track.time >= solution.start + RUN_PARTS[2] * (solution.reached - solution.start)
@@ -487,7 +487,7 @@ def _adhering(scene: TrainScene, solution: TrainSolution) -> list[str]:
         limit = shaft.resistance
         if hub is not None:
             limit += replace(hub, coefficient=float(frictions[number])).torque(float(loads[number]))
-        limit += scene.load.torque if name == train.shafts[train.load].name else 0.0
+        limit += dry_load if number == train.load else 0.0
         if arrives - leaves - limit > _NOT_PASSED_ON * abs(arrives):
             missing += [train.meshes[k].name for k in mine]
     return missing

@@ -24,6 +24,7 @@ from gearidae.engine.model.state import Model
 from gearidae.engine.observers.standing.torques import drive_at, drive_between, free_acceleration, rest_of
 from gearidae.formulas.interpolation import cubic, turning_point
 from gearidae.formulas.roots import zero_of_cubic
+from gearidae.laws.shaft.schedule import segment_ends
 from gearidae.records.standing import GROWS
 
 RTOL: Final = 3e-7
@@ -52,6 +53,15 @@ _ONE_AT_A_TIME: Final = threading.Lock()
 
 Rates: TypeAlias = Callable[[float, Floats], tuple[float, float]]
 """Of travel and speed at a time of a window."""
+
+
+def torque_knots(m: Model) -> list[float]:
+    """Times over tau at which schedules and laws of a model begin another piece, and the end of the run."""
+    s, tables = m.scene, m.tables
+    stops = tables[s.knots_at : s.knots_at + int(s.knot_count)]
+    times = np.concatenate([stops, *(segment_ends(schedule, tables) for schedule in s.schedule)])
+    inner = times[(times > 0.0) & (times < s.end)]
+    return [*np.unique(inner).tolist(), float(s.end)]
 
 
 class Zero(NamedTuple):

@@ -10,14 +10,11 @@ import math
 from collections.abc import Iterator
 from typing import Any, Final, NamedTuple
 
-import numpy as np
-
 from gearidae.engine.model.checkpoint_record import HIGH, MOST_STANDSTILLS
 from gearidae.engine.model.state import PHASE, STOPS, Floats, Model, W
-from gearidae.engine.observers.standing.free_gears import FreeGears, FreeWay, Zero
+from gearidae.engine.observers.standing.free_gears import FreeGears, FreeWay, Zero, torque_knots
 from gearidae.engine.observers.standing.torques import hardest_in, slowest_period_at
 from gearidae.engine.observers.standing.tracking import NEAR
-from gearidae.laws.shaft.schedule import segment_ends
 from gearidae.records.standing import (
     GROWS,
     NOTICED,
@@ -434,11 +431,7 @@ class Judge:
     def knots(self) -> list[float]:
         """Times over tau at which schedules and laws begin another piece, and the end of the run."""
         if self._known_knots is None:
-            s, tables = self._m.scene, self._m.tables
-            stops = tables[s.knots_at : s.knots_at + int(s.knot_count)]
-            times = np.concatenate([stops, *(segment_ends(schedule, tables) for schedule in s.schedule)])
-            inner = times[(times > 0.0) & (times < s.end)]
-            self._known_knots = [*np.unique(inner).tolist(), float(s.end)]
+            self._known_knots = torque_knots(self._m)
         return self._known_knots
 
     def _drive_torque(self, z: Zero, time: float) -> float:

@@ -87,7 +87,7 @@ def slowest_period_at(address: int) -> float:
 
 
 @compiled
-def _enter_piece(m: Model, begin: float, end: float) -> tuple[int, int, int, float, float]:
+def enter_piece(m: Model, begin: float, end: float) -> tuple[int, int, int, float, float]:
     """Set segments of schedules and the window of laws to a piece between two knots; return the run's own."""
     s, w = m.state, m.work
     kept = (s.segment[0], s.segment[1], s.segment[2], w.law_from, w.law_until)
@@ -107,7 +107,7 @@ def _enter_piece(m: Model, begin: float, end: float) -> tuple[int, int, int, flo
 
 
 @compiled
-def _go_back(m: Model, kept: tuple[int, int, int, float, float]) -> None:
+def go_back(m: Model, kept: tuple[int, int, int, float, float]) -> None:
     """Set segments and window of the run again."""
     s, w = m.state, m.work
     s.segment[0], s.segment[1], s.segment[2], w.law_from, w.law_until = kept
@@ -142,11 +142,11 @@ def free_acceleration(
         Of the direction.
     """
     m = model_at(address)
-    kept = _enter_piece(m, begin, end)
+    kept = enter_piece(m, begin, end)
     rate = m.scene.phase_rate
     force = push(m, t, position, pinion_lead, speed / rate)
     force -= sign * resistance(m, t, position, pinion_lead)
-    _go_back(m, kept)
+    go_back(m, kept)
     return rate * force / (1.0 / m.scene.pinion_inverse_mass + 1.0 / m.scene.gear_inverse_mass)
 
 
@@ -177,7 +177,7 @@ def rest_of(
         Position of the gear [pb] and lead of the pinion [sigma].
     """
     m = model_at(address)
-    kept = _enter_piece(m, piece[0], piece[1])
+    kept = enter_piece(m, piece[0], piece[1])
     end, longest = piece[1], m.scene.free_step if m.scene.free_step > 0.0 else math.inf
     rests = _rests(t, m, at[0], at[1])
     while rests and t < end:
@@ -188,7 +188,7 @@ def rest_of(
         else:
             t = after
     force = 0.0 if rests else push(m, t, at[0], at[1], 0.0)
-    _go_back(m, kept)
+    go_back(m, kept)
     return t, force
 
 
@@ -201,7 +201,7 @@ def drive_between(
     Arguments as for `rest_of`.
     """
     m = model_at(address)
-    kept = _enter_piece(m, piece[0], piece[1])
+    kept = enter_piece(m, piece[0], piece[1])
     largest, lasts, longest = 0.0, 0.0, (to - t) / _PARTS
     if m.scene.free_step > 0.0:
         longest = min(longest, m.scene.free_step)
@@ -219,7 +219,7 @@ def drive_between(
         largest = max(largest, first, last)
         lasts += share * (after - t)
         t, first = after, last
-    _go_back(m, kept)
+    go_back(m, kept)
     return largest, lasts
 
 
@@ -227,9 +227,9 @@ def drive_between(
 def drive_at(address: int, piece: tuple[float, float], t: float, at: tuple[float, float]) -> float:
     """Driving torque on a pinion at rest over its base radius, scaled; arguments as for `rest_of`."""
     m = model_at(address)
-    kept = _enter_piece(m, piece[0], piece[1])
+    kept = enter_piece(m, piece[0], piece[1])
     force = driving_force(m, DRIVE, t, _angle(m, DRIVE, at[0], at[1]), 0.0)
-    _go_back(m, kept)
+    go_back(m, kept)
     return force
 
 
@@ -250,7 +250,7 @@ def hardest_in(
 ) -> tuple[float, float]:
     """Time at which the drive exceeds the load most, and by how much at most then; arguments as for `rest_of`."""
     m = model_at(address)
-    kept = _enter_piece(m, piece[0], piece[1])
+    kept = enter_piece(m, piece[0], piece[1])
     longest = math.inf
     if m.scene.free_step > 0.0:
         longest = max(m.scene.free_step, (m.scene.end - m.scene.start) / LOOKS_AHEAD)
@@ -260,5 +260,5 @@ def hardest_in(
         size = _bound_of_excess(m, t, at)
         if size > most + 1e-9 * abs(most):
             most, time = size, t
-    _go_back(m, kept)
+    go_back(m, kept)
     return time, most
