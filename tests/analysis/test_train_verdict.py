@@ -12,7 +12,7 @@ from tests.reference.trains import chain, tables
 import gearidae as gd
 from gearidae.analysis.verdict import outcomes
 from gearidae.analysis.verdict.headline import headline
-from gearidae.analysis.verdict.train import judge_train
+from gearidae.analysis.verdict.train import judge_chain
 from gearidae.archive.train import train_dataset
 from gearidae.engine.train.free_train import FreeTrain
 from gearidae.scene import Scene
@@ -50,7 +50,7 @@ def still(scene, since=0.0, place=0.0):
 
 
 def labelled(scene, solution):
-    return train_dataset(scene, judge_train(scene, solution))
+    return train_dataset(scene, judge_chain(scene, solution, None)[0])
 
 
 def test_free_gears_of_a_train_go_as_far_as_by_hand():

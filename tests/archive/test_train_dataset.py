@@ -9,7 +9,7 @@ from tests.reference.train_solution import solved
 from tests.reference.trains import chain
 
 import gearidae as gd
-from gearidae.analysis.verdict.train import judge_train
+from gearidae.analysis.verdict.train import judge_chain
 from gearidae.archive.totals import balance_of, imbalance_of
 from gearidae.archive.train import judged_view, train_dataset
 from gearidae.archive.train.variables import ALL, OF_AGEING, OF_ASPERITIES
@@ -20,7 +20,7 @@ SCENE = Scene.from_dict(chain(hubs=0.3))
 
 def labelled(scene=SCENE):
     solution = solved(scene)
-    return train_dataset(scene, judge_train(scene, solution))
+    return train_dataset(scene, judge_chain(scene, solution, None)[0])
 
 
 @pytest.fixture(scope="module")

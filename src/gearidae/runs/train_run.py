@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from gearidae.archive.disk import DiskError, disk_errors
 from gearidae.archive.journal import journal_of
-from gearidae.engine import Start
+from gearidae.engine import AT_ONCE, Start
 from gearidae.errors import Interrupted, SceneError, SolverError
 from gearidae.progress import RunProgress, run_progress
 from gearidae.records.train_results import sample_columns
@@ -176,15 +176,19 @@ def _early_end(ds: xr.Dataset, reached: float, *words: str) -> SolverError:
 
 
 def run_train(
-    scene: TrainScene, backend: str, on_progress: Callable[[float, int], None] | None = None
+    scene: TrainScene,
+    backend: str,
+    on_progress: Callable[[float, int], None] | None = None,
+    *,
+    start: Start = AT_ONCE,
 ) -> TrainSolution:
-    """Run a train by itself and judge it, with a status that says how it ended."""
+    """Run a train and judge it, with a status that says how it ended."""
     from gearidae.engine.train import solve_train  # what reads results does without it
 
-    solution = solve_train(scene, backend=backend, on_progress=on_progress)
-    from gearidae.analysis.verdict.train import judge_train
+    solution = solve_train(scene, backend=backend, on_progress=on_progress, start=start)
+    from gearidae.analysis.verdict.train import judge_chain
 
-    return judge_train(scene, solution)
+    return judge_chain(scene, solution, start.verdict)[0]
 
 
 def _ended(ds: xr.Dataset) -> xr.Dataset:

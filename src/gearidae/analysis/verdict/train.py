@@ -167,11 +167,6 @@ class _Motion:
         return free.onset(max(zero.time, self.begin), zero.free_angle, end)
 
 
-def judge_train(scene: TrainScene, solution: TrainSolution) -> TrainSolution:
-    """Judge a run of a train by its judged shaft; see `judge_chain`."""
-    return judge_chain(scene, solution, None)[0]
-
-
 def judge_chain(
     scene: TrainScene, solution: TrainSolution, before: Floats | None
 ) -> tuple[TrainSolution, Floats | None]:

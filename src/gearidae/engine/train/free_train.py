@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
+from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
@@ -27,7 +28,7 @@ from gearidae.engine.model.state import DRIVE, LOAD
 from gearidae.engine.observers.standing.free_gears import torque_knots
 from gearidae.engine.observers.standing.torques import enter_piece, go_back
 from gearidae.engine.setup.start import Start
-from gearidae.engine.train.build import make_train
+from gearidae.engine.train.build import TrainProblem, make_train
 from gearidae.engine.train.layout import TrainModel
 from gearidae.laws.frictions import law_limit, resists
 from gearidae.laws.shafts import acting, driving_force
@@ -102,16 +103,23 @@ class FreeTrain:
         }
         self._dry = float(own["resistance"] @ ratio)
         self._viscous, self._drag = float(own["viscous"] @ ratio**2), float(own["drag"] @ ratio**3)
-        problem = make_train(scene, Start(start))
-        self._problem, self._model = problem, problem.model
+        self._scene, self._start = scene, Start(start)
+
+    @cached_property
+    def _problem(self) -> TrainProblem:
+        """The train at its start; most runs never ask for torques beside their own."""
+        return make_train(self._scene, self._start)
+
+    @cached_property
+    def _knots(self) -> list[float]:
+        """Times [s] at which torques begin another piece, in order; the last is the end of the run."""
+        problem = self._problem
         units = problem.model.meshes["time_unit"]
-        self._knots = sorted(
-            {
-                knot * float(unit)
-                for pair, unit in zip(problem.problems, units, strict=True)
-                for knot in torque_knots(pair.model)
-            }
-        )
+        of_meshes = [
+            np.array(torque_knots(pair.model)) * unit
+            for pair, unit in zip(problem.problems, units, strict=True)
+        ]
+        return np.unique(np.concatenate(of_meshes)).tolist()
 
     def push(self, t: float, angle: float, speed: float) -> float:
         """Torque that drives the train at the judged shaft [N m], against its dry resistance."""
@@ -131,7 +139,7 @@ class FreeTrain:
         i = bisect_right(self._knots, t)
         piece = self._knots[i - 1] if i > 0 else 0.0, self._knots[min(i, len(self._knots) - 1)]
         angles, speeds = (driven * angle, loaded * angle), (driven * speed, loaded * speed)
-        push, drags, dry = torques_of(self._model, piece, float(t), angles, speeds)
+        push, drags, dry = torques_of(self._problem.model, piece, float(t), angles, speeds)
         drags -= (self._viscous + self._drag * abs(speed)) * speed / loaded
         return driven * push + loaded * drags, loaded * dry + self._dry
 
