@@ -166,7 +166,7 @@ def pass_stops(m: Model, t: float, y: Floats, room: Floats) -> bool:
     passed = False
     while t < m.scene.end and t >= next_stop(m):
         pass_knot(m, t, room, 0)
-        if m.scene.friction.any_dry != 0:
+        if m.scene.friction.may_stick != 0:
             follow_sliding(m, t, y, room, 0)
         passed = True
     return passed

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 import gearidae as gd
 from gearidae.engine.integrate.correction import correct
-from gearidae.engine.model.state import U, V, W
+from gearidae.engine.model.state import LOAD, U, V, W
 from gearidae.engine.motion.residual import jacobian, residual
 from gearidae.engine.setup.build import make_problem
 
@@ -36,7 +36,7 @@ def test_it_solves_the_linear_equations(case, at_rest, depth, moves, cj):
     problem = PROBLEMS[case]
     m, n = problem.shortened(1.0).model, problem.start.size  # a copy
     if at_rest:
-        m.scene.dry, m.state.slip = 1, 0.0
+        m.scene.torque[LOAD].resists, m.state.slip = 1, 0.0
     y = problem.start + 0.1 * np.array(moves[:n])
     y[U] = m.scene.clearance[0] - depth
     yp = np.array(moves[4 : 4 + n])

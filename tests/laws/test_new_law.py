@@ -1,6 +1,7 @@
 """A new law is its own file, and a line of a list where its folder has one: no other file of the package names it."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -10,6 +11,7 @@ import gearidae as gd
 from gearidae.asperities import law_class, law_names
 
 PACKAGE = Path(gd.__file__).parent
+PAGE = Path(__file__).parents[2] / "docs" / "extending.md"
 
 WALL = '''
 """Wall: flanks nearer than a distance repel each other like a spring, and lose what a dashpot takes."""
@@ -98,6 +100,69 @@ def test_a_law_of_a_pair_takes_two_files(tmp_path):
         env={**os.environ, "PYTHONPATH": str(source.parent), "NUMBA_CACHE_DIR": str(tmp_path)},
     ).stdout
     assert said.splitlines() == ["2.0 3e-09", "True True", "1", "(1.0, -2.0) (0.25, 0.0)"]
+
+
+BRAKED = """
+import numpy as np
+import gearidae as gd
+from gearidae.engine.model.state import SCENE, blank_model
+from gearidae.formulas.quadrature import Ends
+from gearidae.laws.frictions import FRICTION_LAWS, asks_for, bits_of, book_friction, book_stop
+from gearidae.laws.frictions import friction_laws_of, law_limit
+from gearidae.records.energy import LOSSES
+from gearidae.records.standing import Holding
+
+law = FRICTION_LAWS[-1]
+scene = gd.preset("teodorescu2009").replace({"gears.gear_brake": "2 pN m"})
+print(scene.gears.gear_brake, scene.gears.pinion_brake, asks_for(scene, law))
+print("brake" in set(gd.combinations().first), "brake_loss" in LOSSES, (Holding.BRAKE | Holding.HUB_FRICTION).words)
+print([law.name for law in friction_laws_of(scene, 1)], [law.name for law in friction_laws_of(scene, 0)])
+m = blank_model(np.zeros(1, SCENE)[0], np.zeros(1), 1)
+m.state.slip = m.state.pinion_slip = -1.0
+for shaft, brake in ((0, 3.0), (1, 2.0)):
+    m.scene.torque[shaft].resists, m.scene.torque[shaft].brake = bits_of((law,)), brake
+    speeds = Ends(-4.0, 0.0, -4.0, 0.0)
+    lost = book_friction(m, shaft, 0.5, 0.5, 0.0, -2.0, speeds, (0.0, 0.0))
+    print(law_limit(m, shaft, 0.0, 0.0, 0.0), *lost, book_stop(m, shaft, 0.25))
+print(m.state.energy.brake_loss, m.state.energy.dry_loss)
+"""
+
+
+def test_a_set_valued_law_takes_two_files(tmp_path):
+    """The brake of the page on extending, beside the dry load, which gears without a load do not have."""
+    (brake,) = (
+        block
+        for block in re.findall(
+            r"^```python\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE
+        )
+        if "BRAKE = FrictionLaw" in block
+    )
+    source = tmp_path / "src" / "gearidae"
+    shutil.copytree(PACKAGE, source, ignore=shutil.ignore_patterns("__pycache__"))
+    (source / "laws" / "shaft" / "brake.py").write_text(brake, encoding="utf-8")
+    listed = source / "laws" / "frictions.py"
+    text = listed.read_text(encoding="utf-8")
+    with_brake = text.replace("(DRY_LOAD,)", "(DRY_LOAD, BRAKE)").replace(
+        "from gearidae.laws.shaft.dry_load",
+        "from gearidae.laws.shaft.brake import BRAKE\nfrom gearidae.laws.shaft.dry_load",
+    )
+    assert with_brake.count("BRAKE") == 2
+    listed.write_text(with_brake, encoding="utf-8")
+    said = subprocess.run(
+        [sys.executable, "-c", BRAKED],
+        capture_output=True,
+        text=True,
+        check=True,
+        env={**os.environ, "PYTHONPATH": str(source.parent), "NUMBA_CACHE_DIR": str(tmp_path)},
+    ).stdout
+    assert said.splitlines() == [
+        "2e-12 0.0 True",
+        "True True hub friction and brake",
+        "['dry resistance', 'brake'] []",
+        "3.0 6.0 0.0 0.0",
+        "2.0 4.0 0.0 0.0",
+        "10.5 0.0",
+    ]
 
 
 def test_an_asperity_law_stands_in_its_file_alone():

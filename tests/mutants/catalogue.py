@@ -211,15 +211,15 @@ MUTANTS = (
     Mutant(
         "dry resistance that pushes a gear that turns backwards",
         "engine/motion/shafts.py",
-        "return m.state.slip * dry_force(m, t, y)",
-        "return dry_force(m, t, y)",
+        "return m.state.slip * own_limit(m, LOAD, t, y, y[W])",
+        "return own_limit(m, LOAD, t, y, y[W])",
         ("properties/test_engine_symmetries.py",),
     ),
     Mutant(
         "dry resistance that holds twice as much as it should",
-        "engine/friction/forces.py",
-        "return max(driving_force(m, LOAD, t, torque_angle(m, LOAD, y[U]",
-        "return 2.0 * max(driving_force(m, LOAD, t, torque_angle(m, LOAD, y[U]",
+        "laws/shaft/dry_load.py",
+        "return value + max(driving_force(m, shaft, t, angle, speed), 0.0)",
+        "return value + 2.0 * max(driving_force(m, shaft, t, angle, speed), 0.0)",
         ("properties/test_event_times.py",),
     ),
     Mutant(

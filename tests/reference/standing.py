@@ -64,7 +64,7 @@ class Plant:
             ld.drag,
             ld.viscous,
             drive,
-            lambda t: max(value(ld, t), 0.0) if ld.is_dry else 0.0,
+            lambda t: max(value(ld, t), 0.0),
             np.array(sorted(knots)),
             0.02 / max(fast) if fast else math.inf,
         )

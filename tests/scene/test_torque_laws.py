@@ -76,11 +76,6 @@ def test_what_is_no_law_is_refused(scene, law, message):
         scene.replace({"drive.law": law})
 
 
-def test_a_load_with_a_law_is_dry(scene):
-    assert not scene.load.is_dry
-    assert scene.replace({"load.law": MOTOR}).load.is_dry
-
-
 @pytest.mark.parametrize("name", ["", "two words", 5, None])
 def test_what_is_no_name_is_refused(name):
     with pytest.raises(SceneError, match="must be a word"):

@@ -21,6 +21,8 @@ from gearidae.archive.select import is_roller, is_train, scene_of
 from gearidae.archive.totals import balance_of, extremes_of
 from gearidae.archive.variables import ENERGY_BALANCE
 from gearidae.arrays import Floats
+from gearidae.laws.frictions import friction_laws_of
+from gearidae.laws.law import LOAD
 from gearidae.records import EnergyBalance, EventKind, Extremes
 from gearidae.records.energy import LOSSES
 from gearidae.records.quantity import Totals
@@ -189,7 +191,7 @@ class _Events:
 
     def __init__(self, scene: GearScene, start: float) -> None:
         self.counts = dict.fromkeys(EventKind, 0)
-        self._dry, self._start = scene.load.is_dry, start
+        self._laws, self._start = [law.name for law in friction_laws_of(scene, LOAD)], start
         self._hubs, self._rubs = has_joint_friction(scene), has_flank_friction(scene)
         self._gear, self._flanks = False, set[tuple[int, int]]()  # what is held
         self._since: float | None = None  # when the gear came to rest
@@ -228,7 +230,7 @@ class _Events:
             return self._total + end - self._since, True
         rubs = self._hubs or self._rubs
         moved = (EventKind.SLIP, EventKind.FLANK_STICK, EventKind.FLANK_SLIP, EventKind.SLIDING_REVERSAL)
-        if (self._dry or rubs) and still and not any(self.counts[event] for event in moved):
+        if (self._laws or rubs) and still and not any(self.counts[event] for event in moved):
             return end - self._start, True
         return self._total, still and rubs
 
@@ -236,7 +238,7 @@ class _Events:
         """What holds a gear that rests at the end; of one that has never moved, what can."""
         from_start = self._since is None
         shaft = self._gear or from_start
-        held = ["dry resistance"] if shaft and self._dry else []
+        held = list(self._laws) if shaft else []
         held += ["hub friction"] if shaft and self._hubs else []
         held += ["flank friction"] if self._flanks or (from_start and self._rubs and not held) else []
         return " and ".join(held)

@@ -353,10 +353,11 @@ def _begin_balance(address: int, m: Model, y: Floats) -> None:
 
 def _hold_or_slip(source: Model, m: Model, time: float, y: Floats) -> None:
     """Set the directions of slip where other elements resist than before, or what holds the gears no longer does."""
-    if m.scene.friction.any_dry == 0:
+    if m.scene.friction.may_stick == 0:
         m.state.hold, m.state.slip = FREE, 1.0
-    elif m.scene.friction.any_friction == source.scene.friction.any_friction and (m.scene.dry != 0) == (
-        source.scene.dry != 0
+    elif (
+        m.scene.friction.any_friction == source.scene.friction.any_friction
+        and (m.scene.torque["resists"] == source.scene.torque["resists"]).all()
     ):
         settle_start(m, time, y, False)
     else:

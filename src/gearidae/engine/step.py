@@ -512,7 +512,7 @@ def finish_step(
             if keeps_checkpoint(m):
                 driver.since = CHECKPOINT_STEPS
             events = pass_knot(m, t, out.events, events)
-            if m.scene.friction.any_dry != 0:
+            if m.scene.friction.may_stick != 0:
                 events = follow_sliding(m, t, y, out.events, events)[0]
             afresh = True
         else:
@@ -623,7 +623,7 @@ def switch(
         if too_many:
             error = MANY_EVENTS
     # Friction decides behind the pairs and before the laws: limits follow from the loads of the new branches.
-    if m.scene.friction.any_dry != 0:
+    if m.scene.friction.may_stick != 0:
         count, jumped = follow_sliding(m, t, y, events, count)
         restart |= jumped
     if m.scene.guarded != 0:

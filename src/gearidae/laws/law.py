@@ -127,12 +127,15 @@ class Loss(NamedTuple):
     name, meaning : str
         Also in an archive.
     since : str
-        Version that began to archive it.
+        Version that began to archive it; empty for the first.
+    group : str
+        Of losses that are added up for the run summary: ``useful`` or ``friction``; empty for others.
     """
 
     name: str
     meaning: str
     since: str = "0.3"
+    group: str = ""
 
 
 class Sample(NamedTuple):
@@ -180,8 +183,9 @@ class ShaftLaw:
     ----------
     name : str
     drives : bool
-        Whether its work counts as the drive's. At the gear such a law is a part of the dry resistance, which is
-        set-valued. All others act as they are on either shaft, book their own losses, and at rest do not change.
+        Whether its work counts as the drive's. At the gear such a law is a part of the dry load, which is set-valued
+        (`gearidae.laws.shaft.dry_load`). All others act as they are on either shaft, book their own losses, and at rest
+        do not change.
     fields : tuple of (name, type)
         Constants of a shaft, in ``SCENE.torque``.
     coefficients : tuple of Coefficient

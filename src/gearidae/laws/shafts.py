@@ -1,8 +1,8 @@
 """All laws of a shaft, and their sums.
 
-The first laws drive: they are the torque of the drive at the pinion, and at the gear the limit of the dry resistance.
-The others act on either shaft as they are. Sums of forces begin at -0.0, to which adding a number gives that number;
-those of rates and losses begin at 0.0.
+The first laws drive: they are the torque of the drive at the pinion, and at the gear the limit of the dry load. The
+others act on either shaft as they are. Set-valued laws have a list of their own (`gearidae.laws.frictions`). Sums of
+forces begin at -0.0, to which adding a number gives that number; those of rates and losses begin at 0.0.
 """
 
 from __future__ import annotations
@@ -16,12 +16,13 @@ from gearidae.laws.shaft.constant import CONSTANT
 from gearidae.laws.shaft.drag import DRAG
 from gearidae.laws.shaft.harmonic import HARMONICS, ORDERS
 from gearidae.laws.shaft.held_speed import HELD_SPEED
-from gearidae.laws.shaft.own import OWN
+from gearidae.laws.shaft.own import OWN, last_on_its_side
 from gearidae.laws.shaft.schedule import SCHEDULE
 from gearidae.laws.shaft.spring import SPRING
 
 if TYPE_CHECKING:
     from gearidae.engine.model.state import Model
+    from gearidae.laws.friction_law import FrictionLaw
     from gearidae.scene import GearScene
 
 SHAFT_LAWS: Final[tuple[ShaftLaw, ...]] = (
@@ -135,6 +136,18 @@ def is_constant(m: Model, shaft: int) -> bool:
 
 
 @compiled
+def driving_along(
+    m: Model, shaft: int, t: float, angle: float, speed: float, acceleration: float
+) -> tuple[float, float]:
+    """`driving_force`, and its rate along the motion; where a law of a user jumps, both of the side before."""
+    if is_constant(m, shaft):
+        return m.scene.torque[shaft].constant, 0.0
+    then, angle, speed = last_on_its_side(m, shaft, t, angle, speed, acceleration)
+    rate = driving_rate(m, shaft, then, angle, speed, acceleration)
+    return driving_force(m, shaft, then, angle, speed) + (t - then) * rate, rate
+
+
+@compiled
 def is_steady(m: Model, shaft: int, t: float) -> bool:
     """Whether the torque of a shaft that does not turn stays as it is until a schedule enters its next segment."""
     return bool(_steady(m, shaft, t, True))
@@ -154,7 +167,7 @@ def book_losses(m: Model, shaft: int, h: float, angle: float, travel: float, spe
     return _losses(m, shaft, h, angle, travel, speeds, 0.0)
 
 
-def has_law(scene: Any, shaft: int, law: ShaftLaw) -> bool:
+def has_law(scene: Any, shaft: int, law: ShaftLaw | FrictionLaw) -> bool:
     """Whether a key of a law in the gears' table is not 0 for a shaft."""
     return any(number_of(scene, shaft, constant.name) != 0.0 for constant in law.coefficients if constant.key)
 

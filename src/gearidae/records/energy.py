@@ -8,12 +8,19 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Final
 
+from gearidae.laws.frictions import FRICTION_LAWS
+from gearidae.laws.law import Loss
 from gearidae.laws.pairs import MESH_LAWS
 from gearidae.laws.shafts import SHAFT_LAWS
 from gearidae.records.quantity import ENERGY, Quantity, Totals, Unit
 
 _energy = partial(Quantity, unit=ENERGY)
 _work, _loss = partial(_energy, sign=1, archive=True), partial(_energy, sign=-1)
+
+
+def _of_law(loss: Loss) -> Quantity:
+    return _loss(loss.name, loss.meaning, archive=True, since=loss.since, group=loss.group)
+
 
 ENERGY_SUMS: Final = (
     _work("drive_work", "work of the drive"),
@@ -28,10 +35,9 @@ ENERGY_SUMS: Final = (
         remark="from the change to the elastic contact model",
     ),
     _loss("drag_loss", "energy lost to drag", archive=True, group="useful"),
-    _loss("dry_loss", "energy lost to dry resistance", archive=True, group="useful"),
     *(
-        _loss(loss.name, loss.meaning, archive=True, since=loss.since)
-        for laws in (MESH_LAWS, SHAFT_LAWS)
+        _of_law(loss)
+        for laws in (FRICTION_LAWS, MESH_LAWS, SHAFT_LAWS)
         for law in laws
         for loss in law.losses
     ),

@@ -11,6 +11,7 @@ from enum import IntFlag
 from functools import partial
 from typing import Final, NamedTuple
 
+from gearidae.laws.frictions import FRICTION_LAWS
 from gearidae.records.quantity import PITCHES, SECONDS, TORQUE, Quantity, count
 
 COLUMNS = (
@@ -23,9 +24,12 @@ whether free gears have settled, which archives of version 0.3.0 do not say."""
 
 
 class Holding(IntFlag):
-    """What holds a gear."""
+    """What holds a gear; set-valued laws of a shaft declare what they say."""
 
-    DRY_RESISTANCE = 1
+    _ignore_ = "holder"
+
+    for holder in (holder for law in FRICTION_LAWS for holder in law.holders):
+        vars()[holder.name.upper()] = holder.number
     HUB_FRICTION = 2
     FLANK_FRICTION = 4
     ADHESION = 8
@@ -37,7 +41,7 @@ class Holding(IntFlag):
     @property
     def words(self) -> str:
         """Names of all that hold it."""
-        names = ((part.name or "").lower().replace("_", " ") for part in Holding if part in self)
+        names = ((part.name or "").lower().replace("_", " ") for part in sorted(Holding) if part in self)
         spoken = {"drive well": "the drive's own well", "shaft tie": "a shaft's tie to the ground"}
         return " and ".join(spoken.get(name, name) for name in names)
 
@@ -74,7 +78,7 @@ STANDING_NOW: Final = (
     _number(
         "holding",
         "what holds the gear at the end",
-        comment="sum of " + ", ".join(f"{part.value} for {part.words}" for part in Holding),
+        comment="sum of " + ", ".join(f"{part.value} for {part.words}" for part in sorted(Holding)),
     ),
     _advance("turned_back", "pitches by which the gear has gone back at the end"),
     _advance("free_turned_back", "pitches by which free gears would have gone back"),

@@ -9,6 +9,7 @@ import numpy as np
 
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
+from gearidae.laws.frictions import mean_limit
 from gearidae.laws.law import DRIVE, LOAD
 from gearidae.laws.shafts import is_held, slowing
 from gearidae.mesh.pair_contact import PairContact, pair_contact
@@ -141,8 +142,8 @@ def _balance(
     ratio = gears.gear_teeth / gears.pinion_teeth
     (at_pinion, _), (at_gear, drag) = slowing(scene, DRIVE), slowing(scene, LOAD)
     held = _mean_size(_over_run(scene, 0.0, drive.speed_knots()))
-    driven = torque + drive.speed_gain * held - taken[0]
-    surplus = driven * ratio * transmitted - _mean_resistance(scene) - taken[1]
+    driven = torque + drive.speed_gain * held - taken[0] - mean_limit(scene, DRIVE, mean_over_run)
+    surplus = driven * ratio * transmitted - mean_limit(scene, LOAD, mean_over_run) - taken[1]
     if surplus <= 0.0 or is_held(scene):
         return 0.0
     linear = at_gear + at_pinion * ratio**2 * transmitted
@@ -168,11 +169,6 @@ def _over_run(scene: Scene, constant: float, knots: Knots) -> Floats:
 
 def _mean_size(values: Floats) -> float:
     return float(np.abs(values).mean())
-
-
-def _mean_resistance(scene: GearScene) -> float:
-    """Mean dry resistance over the run [N m], harmonics and laws left out."""
-    return _mean_size(_over_run(scene, scene.load.torque, scene.load.schedule))
 
 
 def resting_gap(scene: Scene) -> float:
@@ -226,7 +222,7 @@ def mean_drive_torque(scene: GearScene) -> float:
         return mean
     speed = abs(scene.initial.gear_speed) if drive.speed is None else _balance(scene, mean, 1.0)
     linear, quadratic = slowing(scene, LOAD)
-    resistance = _mean_resistance(scene) + speed * (linear + quadratic * speed)
+    resistance = mean_limit(scene, LOAD, mean_over_run) + speed * (linear + quadratic * speed)
     taken = resistance * gears.pinion_teeth / gears.gear_teeth
     return taken if drive.law is None else max(mean, taken)
 

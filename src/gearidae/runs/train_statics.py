@@ -19,6 +19,8 @@ import numpy as np
 
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError, SolverError
+from gearidae.laws.frictions import mean_limit
+from gearidae.laws.law import LOAD
 from gearidae.mesh.involute import curvature_radii, separation
 from gearidae.mesh.pair_contact import PairContact, pair_contact
 from gearidae.mesh.train_modes import levers
@@ -90,7 +92,7 @@ def resistances(scene: GearScene | TrainScene) -> tuple[Floats, Floats, Floats]:
         np.array([getattr(shaft, key) for shaft in shafts]) for key in ("resistance", "viscous", "drag")
     )
     load, number = scene.load, scene.train.load
-    dry[number] += mean_over_run(scene, load.torque, load.schedule)
+    dry[number] += mean_limit(scene, LOAD, mean_over_run)
     viscous[number] += load.viscous
     drag[number] += load.drag
     return dry, viscous, drag

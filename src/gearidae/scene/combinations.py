@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 from gearidae.asperities import law_class, law_names
 from gearidae.errors import SceneError
+from gearidae.laws.frictions import FRICTION_LAWS, asks_for, key_of
 from gearidae.laws.law import DRIVE, LOAD, ShaftLaw, on_shaft
 from gearidae.laws.pairs import MESH_LAWS, has_mesh_law
 from gearidae.laws.shafts import SHAFT_LAWS, has_law
@@ -79,7 +80,7 @@ FEATURES: Final = {
         "drive.pin_radius",
         lambda scene: any(joint.coefficient > 0.0 and joint.name == "pin" for joint in joints(scene)),
     ),
-    "dry resistance": Feature("load.torque", lambda scene: scene.load is not None and scene.load.is_dry),
+    **{law.name: Feature(key_of(law), partial(asks_for, law=law)) for law in FRICTION_LAWS},
     **{
         f"{name} asperities": Feature("contact.asperity", partial(_has_asperities, name=name))
         for name in _ASPERITIES

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 from pydantic import Field, create_model, model_validator
 
 from gearidae.errors import SceneError
+from gearidae.laws.frictions import LAWS_OF_SHAFTS
 from gearidae.laws.law import SHAFT_NAMES, Key
 from gearidae.laws.pairs import MESH_LAWS
-from gearidae.laws.shafts import SHAFT_LAWS
 from gearidae.scene.group import Group, shorten
 from gearidae.scene.pitch_errors import PitchErrors
 from gearidae.scene.quantity import Count, Phase, Quantity, Switch
@@ -54,7 +54,7 @@ def _keys_of_laws() -> dict[str, Any]:
     """Keys of the laws of a shaft, of either shaft."""
     return {
         f"{shaft}_{constant.name}": _key_of_law(key, key.description.format(shaft=shaft))
-        for law in SHAFT_LAWS
+        for law in LAWS_OF_SHAFTS
         for constant in law.coefficients
         if (key := constant.key) is not None
         for shaft in SHAFT_NAMES

@@ -244,8 +244,3 @@ class Load(Group):
         default=None,
         description="a law of time, angle and speed, added to the dry resistance, whose sum is cut off at 0",
     )
-
-    @property
-    def is_dry(self) -> bool:
-        """Whether there is a resistance that opposes motion in both directions, and may hold the gear at rest."""
-        return self.torque != 0.0 or bool(self.harmonic) or bool(self.schedule) or self.law is not None

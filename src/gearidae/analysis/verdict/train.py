@@ -17,6 +17,9 @@ import numpy as np
 from gearidae.analysis.verdict.free_train import FreeTrain
 from gearidae.archive.train.work import MESH_LOSSES
 from gearidae.arrays import Floats
+from gearidae.laws.frictions import friction_laws_of
+from gearidae.laws.law import LOAD
+from gearidae.laws.shaft.dry_load import DRY_LOAD
 from gearidae.records import RUN_PARTS, EventKind, Extremes
 from gearidae.records.standing import HALF_PITCH, SETTLED_WITHIN, Followed, Holding, stands, turns_round
 from gearidae.records.train_results import NO_TRACK
@@ -286,8 +289,8 @@ def _holders(
     names = list(scene.shafts)
     if free_advance == 0.0:
         if free.dry(motion.end, motion.angle[-1], 0.0) > 0.0:
-            holding |= Holding.DRY_RESISTANCE
-        if scene.load.is_dry:
+            holding |= Holding(DRY_LOAD.holders[0].number)
+        if friction_laws_of(scene, LOAD):
             held.append(f"dry load of {names[train.load]}")
         held += [
             f"dry resistance of {name}" for name, shaft in scene.shafts.items() if shaft.resistance > 0.0

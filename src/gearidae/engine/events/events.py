@@ -18,7 +18,7 @@ from gearidae.engine.events.cutoff import cutoff_guard, watches_cutoff
 from gearidae.engine.events.law_switches import law_guard, shaft_guard
 from gearidae.engine.events.mesh_marks import cross_mark, crossed_mark, mark_guard, outruns_relief
 from gearidae.engine.events.pair_events import pair_guard
-from gearidae.engine.events.sliding import REVERSALS_HIGH, dry_guard
+from gearidae.engine.events.sliding import REVERSALS_HIGH, friction_guard
 from gearidae.engine.events.stops import stop_guard
 from gearidae.engine.model.state import COAST, DRIVE, Floats, Model
 from gearidae.engine.pairs.orbit import follow_orbit
@@ -45,7 +45,7 @@ _ABOVE_ZERO: Final = 1e-300
 def guard(m: Model, t: float, y: Floats) -> float:
     """Root function: falls through zero at the first of all possible events.
 
-    Every single guard (those of `mesh_guard`, the dry resistance, the stop) is positive while it waits, so that the
+    Every single guard (those of `mesh_guard`, of friction, the stop) is positive while it waits, so that the
     least of them waits for them all. What has happened is disarmed where it is dealt with, and the next in the same
     step is found in its turn.
     """
@@ -53,8 +53,8 @@ def guard(m: Model, t: float, y: Floats) -> float:
     least = mesh_guard(m, t, y)
     if m.scene.stop != 0:
         least = min(least, stop_guard(m, t, y))
-    if m.scene.friction.any_dry != 0:
-        least = min(least, dry_guard(m, t, y))
+    if m.scene.friction.may_stick != 0:
+        least = min(least, friction_guard(m, t, y))
     if m.scene.guarded != 0:
         least = min(least, shaft_guard(m, y))
     # a guard that stays at exactly zero just after its root would be an error to the root finder; zero counts as

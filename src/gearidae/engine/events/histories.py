@@ -104,5 +104,5 @@ def begin(address: int, t: float, y: Floats) -> None:
         begin_within(m, y)
     if m.scene.population.flanks != 0:
         join_at_start(m, y)
-    if m.scene.friction.any_dry != 0:
+    if m.scene.friction.may_stick != 0:
         begin_sliding(m, t, y)

@@ -1,6 +1,6 @@
 """Events of dry friction: a flank begins to rub or ends, sliding turns round, sticks and slips, gears come to rest.
 
-Friction of flanks, hubs and the dry resistance at the gear are set-valued elements, whose directions of slip are part
+Friction of flanks, hubs and the set-valued laws of the shafts are elements, whose directions of slip are part
 of the state. Each element that slips has its speed for a guard, and what is held the distance of its friction from the
 limit. A guard that has fallen is dealt with by one decision: alone, an element is held if its friction needs to be no
 larger than its limit; where both gears stand still, all elements are decided on at once
@@ -59,8 +59,8 @@ def _is_known(m: Model, noted: Record) -> bool:
 
 
 @compiled(inline=True)
-def dry_guard(m: Model, t: float, y: Floats) -> float:
-    """Least guard of all dry friction; that of a gear which slips under its load alone needs no force."""
+def friction_guard(m: Model, t: float, y: Floats) -> float:
+    """Least guard of all friction; that of a gear which slips by laws of its shaft alone needs no force."""
     if m.scene.friction.any_friction == 0 and m.state.hold == FREE:
         return m.state.slip * y[W] + STILL
     return sliding_guard(m, t, y)

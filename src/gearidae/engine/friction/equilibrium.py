@@ -1,7 +1,7 @@
 r"""Whether frictions exist that balance a train at rest whose hubs carry the frictions of the pairs, too.
 
-Frictions :math:`f_i` of the pairs within their limits, and what the hubs and the dry resistance hold, have to balance
-the forces Q of both base circles:
+Frictions :math:`f_i` of the pairs within their limits, and what the hubs and the laws of the shafts hold, have to
+balance the forces Q of both base circles:
 
 .. math::
 
@@ -44,8 +44,8 @@ class _Limits(NamedTuple):
 
     pinion: float
     gear: float
-    pinion_dry: float
-    gear_dry: float
+    pinion_constant: float
+    gear_constant: float
     pin: tuple[float, float]
 
 
@@ -53,14 +53,14 @@ class _Limits(NamedTuple):
 def equilibrium_margin(m: Model, pinion: float, gear: float) -> float:
     """Largest reserve of force of all vertices; below zero if and only if nothing balances."""
     work = m.work.friction
-    pinion_hub = gear_hub = pinion_dry = gear_dry = 0.0
+    pinion_hub = gear_hub = pinion_constant = gear_constant = 0.0
     for i in range(work.pairs, work.count):
         if work.element[i].hold == HELD_GEAR:
-            gear_hub, gear_dry = work.element[i].hub, work.element[i].limit
+            gear_hub, gear_constant = work.element[i].hub, work.element[i].limit
         else:
-            pinion_hub, pinion_dry = work.element[i].hub, work.element[i].limit
+            pinion_hub, pinion_constant = work.element[i].hub, work.element[i].limit
     pin = (work.pin[0], work.pin[1])
-    limits = _Limits(pinion_hub, gear_hub, pinion_dry, gear_dry, pin)
+    limits = _Limits(pinion_hub, gear_hub, pinion_constant, gear_constant, pin)
     free = _Left(pinion, gear, work.load[0], work.load[1])
     if work.pairs == 0:
         return _at_vertex(free, limits)
@@ -132,12 +132,12 @@ def _at_vertex(left: _Left, limits: _Limits) -> float:
 
 @compiled(inline=True)
 def _reserve_of_pinion(limits: _Limits, loads: Loads, force: float) -> float:
-    return limits.pinion_dry + limits.pinion * loads.pinion - abs(force)
+    return limits.pinion_constant + limits.pinion * loads.pinion - abs(force)
 
 
 @compiled(inline=True)
 def _reserve_of_gear(limits: _Limits, loads: Loads, force: float) -> float:
-    return limits.gear_dry + limits.gear * loads.gear - abs(force)
+    return limits.gear_constant + limits.gear * loads.gear - abs(force)
 
 
 @compiled
@@ -148,10 +148,10 @@ def _with_one(m: Model, left: _Left, i: int, limits: _Limits) -> float:
         sign = 1.0 - 2.0 * (which % 2)
         falls = gear_falls = 0.0
         if which < 2:
-            constant = (left.pinion - sign * limits.pinion_dry) / element.pinion
+            constant = (left.pinion - sign * limits.pinion_constant) / element.pinion
             falls = sign * limits.pinion / element.pinion
         else:
-            constant = (left.gear - sign * limits.gear_dry) / element.gear
+            constant = (left.gear - sign * limits.gear_constant) / element.gear
             gear_falls = sign * limits.gear / element.gear
         total = (left.along, left.over)
         near, far, room = loads_with_friction(
@@ -183,7 +183,7 @@ def _with_two(m: Model, left: _Left, i: int, k: int, limits: _Limits) -> float:
     second_along, second_over = across(m, second.flank != 0)
     for which in range(4):
         on_pinion, on_gear = 1.0 - 2.0 * (which % 2), 1.0 - 2.0 * (which // 2)
-        a, b = left.pinion - on_pinion * limits.pinion_dry, left.gear - on_gear * limits.gear_dry
+        a, b = left.pinion - on_pinion * limits.pinion_constant, left.gear - on_gear * limits.gear_constant
         c, d = on_pinion * limits.pinion / determinant, on_gear * limits.gear / determinant
         f, g = (
             (a * second.gear - second.pinion * b) / determinant,

@@ -1,8 +1,8 @@
 """Accelerations of both shafts with dry friction, and how far it is from letting go of what it holds.
 
-Friction of flanks, hubs and the gear's dry resistance is set-valued: each is an element with a direction of slip, or
-holds at rest what it can. Between events the directions are constants, so that all forces are smooth. An element k has
-the speed ``J_k . (turn, w)`` with the surface velocities of both base circles; a force of friction f takes
+Friction of flanks, hubs and the laws of `gearidae.laws.frictions` are set-valued: each is an element with a direction
+of slip, or holds at rest what it can. Between events the directions are constants, so that all forces are smooth. An
+element k has the speed ``J_k . (turn, w)`` with the surface velocities of both base circles; a friction f takes
 ``J_k f`` from the forces at the base circles.
 """
 
@@ -31,10 +31,11 @@ from gearidae.engine.friction.pairs import (
     set_limits,
 )
 from gearidae.engine.model.record_types import AT_REST, HELD_GEAR, HELD_PAIR, HELD_PINION
-from gearidae.engine.model.state import COAST, LOAD, PHASE, Floats, Model, U, V, W
+from gearidae.engine.model.state import COAST, DRIVE, LOAD, PHASE, Floats, Model, U, V, W
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.pairs.tooth_pairs import flank_of_history, pair_gap
-from gearidae.laws.shafts import acting, driving_force
+from gearidae.laws.frictions import law_limit, resists
+from gearidae.laws.shafts import acting
 
 RETURN: Final = 0.05
 """Rate at which the sliding that errors have brought about in a pair that rolls is taken out again, over 1/tau."""
@@ -44,32 +45,35 @@ NO_FORCE: Final = 1e-12
 
 @compiled(inline=True)
 def has_gear_element(m: Model) -> bool:
-    """Whether dry resistance or a joint may hold the gear."""
-    return bool(m.scene.dry != 0 or m.scene.friction.gear_rubs != 0)
+    """Whether a law of its shaft or a joint may hold the gear."""
+    return bool(resists(m, LOAD) or m.scene.friction.gear_rubs != 0)
 
 
 @compiled(inline=True)
-def dry_force(m: Model, t: float, y: Floats) -> float:
-    """Dry resistance at the gear, over its base radius."""
-    return _dry_force(m, t, y) if m.scene.dry != 0 else 0.0
+def own_limit(m: Model, shaft: int, t: float, y: Floats, speed: float) -> float:
+    """Limit of the laws of a shaft, over its base radius; the speed is that of the base circle."""
+    return _own_limit(m, shaft, t, y, speed) if resists(m, shaft) else 0.0
 
 
 @compiled
-def _dry_force(m: Model, t: float, y: Floats) -> float:
-    """That of a gear that has one; not put into its callers, as most gears have none."""
-    return max(driving_force(m, LOAD, t, torque_angle(m, LOAD, y[U], y[PHASE]), y[W]), 0.0)
+def _own_limit(m: Model, shaft: int, t: float, y: Floats, speed: float) -> float:
+    """That of a shaft that has any; not put into its callers, as most shafts have none."""
+    return law_limit(m, shaft, t, torque_angle(m, shaft, y[U], y[PHASE]), speed)
 
 
 @compiled(inline=True)
 def gear_limit(m: Model, t: float, y: Floats, joints: JointFriction) -> float:
     """Limit of what resists the gear, over its base radius, without what grows with the load of its hub."""
-    return dry_force(m, t, y) + joints.gear_constant
+    return own_limit(m, LOAD, t, y, y[W]) + joints.gear_constant
 
 
 @compiled(inline=True)
-def pinion_limit(joints: JointFriction, pin: tuple[float, float]) -> float:
+def pinion_limit(
+    m: Model, t: float, y: Floats, surface_speed: float, joints: JointFriction, pin: tuple[float, float]
+) -> float:
     """Limit of what resists the pinion under the force of a pin, without what grows with the load of its hub."""
-    return joints.pinion_constant + joints.pin * math.hypot(pin[0], pin[1])
+    own = own_limit(m, DRIVE, t, y, surface_speed)
+    return own + joints.pinion_constant + joints.pin * math.hypot(pin[0], pin[1])
 
 
 class Shafts(NamedTuple):
@@ -134,7 +138,7 @@ class _Pairs(NamedTuple):
 @compiled(inline=True)
 def _sum_pairs(m: Model, surface_speed: float, w: float, pinion: float, gear: float) -> _Pairs:
     """Sum the forces of all noted pairs, and take their friction from the forces at the base circles."""
-    dry, state = m.scene.friction, m.state
+    rubbing, state = m.scene.friction, m.state
     drive = coast = drive_friction = coast_friction = 0.0
     held_first = held_second = limit = sliding_rate = 0.0
     coast_held = False
@@ -145,7 +149,7 @@ def _sum_pairs(m: Model, surface_speed: float, w: float, pinion: float, gear: fl
             coast += noted.force
         else:
             drive += noted.force
-        if dry.flanks == 0:
+        if rubbing.flanks == 0:
             continue
         first, second = levers(m, noted.position)
         friction = direction(m, noted) * noted.limit
@@ -157,7 +161,7 @@ def _sum_pairs(m: Model, surface_speed: float, w: float, pinion: float, gear: fl
             drive_friction += friction
         if state.hold == HELD_PAIR and noted.history == state.held_pair:
             held_first, held_second, coast_held = first, second, on_coast
-            limit = noted.limit + dry.gap_tolerance * abs(noted.slope)
+            limit = noted.limit + rubbing.gap_tolerance * abs(noted.slope)
             sliding_rate = lever_rate(m, noted, surface_speed, w) + RETURN * (
                 first * surface_speed - second * w
             )
@@ -178,7 +182,7 @@ def solve_shafts(m: Model, t: float, y: Floats, surface_speed: float, pinion: fl
     surface_speed : float
         Surface velocity of the pinion.
     pinion, gear : float
-        Forces at the base circles without friction and dry resistance.
+        Forces at the base circles without friction.
     """
     friction, state = m.scene.friction, m.state
     pairs = _sum_pairs(m, surface_speed, y[W], pinion, gear)
@@ -191,9 +195,10 @@ def solve_shafts(m: Model, t: float, y: Floats, surface_speed: float, pinion: fl
     if state.hold == AT_REST:
         return Shafts(0.0, 0.0, 0.0, 0.0, mesh, loads, pin, corner)
     joints = joint_friction(m, t, y)
-    a1, a2, dry = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass, gear_limit(m, t, y, joints)
-    on_pinion = pairs.pinion - state.pinion_slip * pinion_limit(joints, pin)
-    on_gear = pairs.gear - _gear_slip(m) * dry
+    a1, a2 = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass
+    first_limit, second_limit = pinion_limit(m, t, y, surface_speed, joints, pin), gear_limit(m, t, y, joints)
+    on_pinion = pairs.pinion - state.pinion_slip * first_limit
+    on_gear = pairs.gear - _gear_slip(m) * second_limit
     hub_on_pinion, hub_on_gear = state.pinion_slip * joints.pinion_hub, _gear_slip(m) * joints.gear_hub
     held, margin = 0.0, math.inf
     if state.hold == HELD_PAIR:
@@ -209,10 +214,10 @@ def solve_shafts(m: Model, t: float, y: Floats, surface_speed: float, pinion: fl
     on_pinion -= hub_on_pinion * loads.pinion
     on_gear -= hub_on_gear * loads.gear
     if state.hold == HELD_GEAR:
-        margin = dry + joints.gear_hub * loads.gear - abs(pairs.gear)
+        margin = second_limit + joints.gear_hub * loads.gear - abs(pairs.gear)
         return Shafts(a1 * on_pinion, 0.0, pairs.gear, margin, mesh, loads, pin, corner)
     if state.hold == HELD_PINION:
-        margin = pinion_limit(joints, pin) + joints.pinion_hub * loads.pinion - abs(pairs.pinion)
+        margin = first_limit + joints.pinion_hub * loads.pinion - abs(pairs.pinion)
         return Shafts(0.0, a2 * on_gear, pairs.pinion, margin, mesh, loads, pin, corner)
     return Shafts(a1 * on_pinion, a2 * on_gear, held, margin, mesh, loads, pin, corner)
 
@@ -255,7 +260,7 @@ def _gear_slip(m: Model) -> float:
 
 @compiled(inline=True)
 def with_acting(m: Model, t: float, y: Floats, gear: float) -> float:
-    """Force at the gear with all that acts on its shaft but friction and the dry resistance."""
+    """Force at the gear with all that acts on its shaft but friction."""
     if m.scene.torque[LOAD].acts != 0:
         gear = acting(m, LOAD, t, torque_angle(m, LOAD, y[U], y[PHASE]), y[W], gear)
     return gear

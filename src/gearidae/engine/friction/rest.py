@@ -59,7 +59,7 @@ def list_elements(m: Model, t: float, y: Floats) -> None:
         work.element[count].hub = joints.gear_hub
         count += 1
     if friction.pinion_rubs != 0:
-        _set(work.element[count], 1.0, 0.0, pinion_limit(joints, pin), HELD_PINION)
+        _set(work.element[count], 1.0, 0.0, pinion_limit(m, t, y, 0.0, joints, pin), HELD_PINION)
         work.element[count].hub = joints.pinion_hub
         count += 1
     work.count = count

@@ -1,7 +1,7 @@
 """Gears at rest: nothing is integrated, and the time goes on to the next stop or to where they begin to move.
 
-Where friction holds both gears, they are at rest to the last bit. Where dry resistance holds the gear alone, the pinion
-vibrates on its teeth until damping has ended that. Under a steady drive it then is at rest, too: from where its
+Where friction holds both gears, they are at rest to the last bit. Where a law of its shaft holds the gear alone, the
+pinion vibrates on its teeth until damping has ended that. Under a steady drive it then is at rest, too: from where its
 vibration is smaller than the tolerance it is put to its equilibrium.
 """
 
@@ -30,7 +30,7 @@ _PASSES: Final = 2
 @compiled(inline=True)
 def _may_rest(m: Model) -> bool:
     """Whether something holds gears: where nothing rubs, nothing of what follows has been compiled."""
-    return bool(m.state.hold != FREE and m.scene.friction.any_dry != 0)
+    return bool(m.state.hold != FREE and m.scene.friction.may_stick != 0)
 
 
 @compiled(inline=True)

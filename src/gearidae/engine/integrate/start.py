@@ -9,10 +9,11 @@ import numpy as np
 from gearidae.compiled import compiled
 from gearidae.engine.elastic.nodes import node_rates
 from gearidae.engine.events.mesh_marks import relief_step
-from gearidae.engine.model.state import EMPTY, PHASE, Floats, Model, U, V, W
+from gearidae.engine.model.state import EMPTY, LOAD, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.residual import residual
 from gearidae.engine.pairs.mesh_error import error_at
 from gearidae.engine.pairs.tooth_pairs import in_flight, nearest_gap
+from gearidae.laws.frictions import resists
 
 FIRST_RELIEF = 0.25
 """First step, over that in which the tip relief may part a pair."""
@@ -58,7 +59,7 @@ def first_step(m: Model, t: float, y: Floats, yp: Floats, longest: float) -> flo
     for i in range(y.size):
         curvature = max(curvature, abs(later[i] - yp[i]) / (probe * scale[i]))
     step = min(0.5 * math.sqrt(m.scene.rtol / curvature), longest)
-    if m.scene.dry != 0 and m.state.slip != 0.0 and y[W] == 0.0:
+    if resists(m, LOAD) and m.state.slip != 0.0 and y[W] == 0.0:
         # a slip that has just begun must not come to rest again within the first, linear step
         change = abs(later[W] - yp[W]) / probe
         if change > 0.0:

@@ -15,8 +15,8 @@ from gearidae.engine.model.record_types import (
     SCHEDULES,
     record_type,
 )
+from gearidae.laws.frictions import LAWS_OF_SHAFTS
 from gearidae.laws.pairs import MESH_LAWS
-from gearidae.laws.shafts import SHAFT_LAWS
 
 MATERIAL: Final = record_type(
     ("force_scale", REAL),  # force per sqrt(radius / pb), with the material's share of the surface [F]
@@ -39,9 +39,10 @@ COVERAGE: Final = record_type(  # of one side's flanks
 TORQUE: Final = record_type(  # of a shaft
     ("takes_angle", INT),  # 1 if a torque depends on the shaft's angle
     ("acts", INT),  # 1, 2, 4.. added up of the laws that act on it besides its driving torque
+    ("resists", INT),  # 1, 2, 4.. added up of the set-valued laws that it has
     ("angle_unit", REAL),  # unit of the shaft's angle: sigma over the base radius [rad]
-    *(field for law in SHAFT_LAWS for field in law.fields),
-    *((constant.name, REAL) for law in SHAFT_LAWS for constant in law.coefficients),
+    *(field for law in LAWS_OF_SHAFTS for field in law.fields),
+    *((constant.name, REAL) for law in LAWS_OF_SHAFTS for constant in law.coefficients),
 )
 
 SCHEDULE: Final = record_type(
@@ -77,13 +78,16 @@ POPULATION: Final = record_type(
 )
 
 FRICTION: Final = record_type(  # of flanks and joints: hubs and the pin of a drive
-    ("any_dry", INT),  # 1 if anything dry resists: flanks, joints or the load
-    ("any_friction", INT),  # 1 if flanks or joints do, or the loads of joints are followed
+    ("may_stick", INT),  # 1 if friction may hold anything: flanks, joints, or a set-valued law of a shaft
+    (
+        "any_friction",
+        INT,
+    ),  # 1 if not the gear alone: flanks, joints, a law of the pinion; or loads are followed
     ("flanks", INT),  # 1 if flanks have
     ("joints", INT),  # 1 if a joint has a radius, so that loads are followed
     ("hubs", INT),  # 1 if a hub has friction that grows with its load
     ("ages", INT),  # 1 if friction of a joint grows with the time at rest
-    ("pinion_rubs", INT),  # 1 if a joint of the pinion has friction
+    ("pinion_rubs", INT),  # 1 if a joint or a law of the pinion has friction
     ("gear_rubs", INT),  # 1 if a joint of the gear has
     ("forced", INT),  # 1 if the drive pushes with a pin
     ("holding", INT),  # kinds of dry friction: a sum of values of `gearidae.records.standing.Holding`
@@ -169,7 +173,6 @@ SCENE: Final = record_type(
     ("curvature_force", INT),  # 1 if a force pays for the changing contact length
     ("pair_laws", INT),  # 1, 2, 4.. added up of the laws of its pairs, see `gearidae.engine.laws.pairs`
     *((constant.name, REAL) for constant in MESH_CONSTANTS),
-    ("dry", INT),  # 1 if there is dry resistance at the gear
     ("error_count", INT),  # harmonics of the pinion's angle: static error and its own runout [1]
     ("error_at", INT),  # order, amplitude and phase of each, among the tables [index]
     ("torque", TORQUE, (2,)),  # of the pinion (DRIVE) and of the gear (LOAD)

@@ -18,7 +18,11 @@ from gearidae.engine.model.record_types import (
     SLOTS_HIGH,
     record_type,
 )
+from gearidae.laws.frictions import FRICTION_LAWS
 from gearidae.records.energy import ENERGY_NOW
+
+NOTED_FRICTION: Final = record_type(*(field for law in FRICTION_LAWS for field in law.noted))
+"""What set-valued laws of a shaft note for their losses."""
 
 QUADRATURE: Final = record_type(  # inputs of the powers at the last sample of the energy balance
     ("time", REAL),  # [tau]
@@ -32,8 +36,7 @@ QUADRATURE: Final = record_type(  # inputs of the powers at the last sample of t
     ("gear_acceleration", REAL),  # [sigma/tau^2]
     ("drive", REAL),  # torque over base radius [F]
     ("drive_rate", REAL),  # [F/tau]
-    ("load", REAL),  # torque over base radius [F]
-    ("load_rate", REAL),  # [F/tau]
+    ("friction", NOTED_FRICTION, (2,)),  # of both shafts
     ("radius_power", REAL),  # of the changing radius [F sigma/tau]
     ("radius_power_rate", REAL),  # [F sigma/tau^2]
     ("length_work", REAL),  # of the radius on the adhesion losses added since then [F sigma]

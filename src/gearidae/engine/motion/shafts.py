@@ -9,8 +9,8 @@ from gearidae.compiled import compiled, compiled_once, name_type
 from gearidae.engine.compiling import FRICTION
 from gearidae.engine.friction.forces import (
     Slopes,
-    dry_force,
     friction_slopes,
+    own_limit,
     rubbed_accelerations,
     solve_shafts,
     with_acting,
@@ -58,8 +58,8 @@ def shafts_at(m: Model, t: float, y: Floats, mesh: MeshForces) -> Shafts:
 
 @compiled(inline=True)
 def resisting_force(m: Model, t: float, y: Floats) -> float:
-    """What resists the gear over R2, scaled: what acts on its shaft, and dry resistance against its slip (Eq. 2)."""
-    return m.state.slip * dry_force(m, t, y) - with_acting(m, t, y, -0.0)
+    """What resists the gear over R2, scaled: what acts on its shaft, and its laws' limit against its slip (Eq. 2)."""
+    return m.state.slip * own_limit(m, LOAD, t, y, y[W]) - with_acting(m, t, y, -0.0)
 
 
 @compiled(inline=True)
@@ -182,7 +182,7 @@ def acceleration_slopes(m: Model, y: Floats, mesh: MeshForces) -> AccelerationSl
 
 @compiled
 def forces_at_shafts(m: Model, t: float, y: Floats) -> tuple[float, float, float]:
-    """Surface velocity of the pinion, and the forces at both base circles without friction and dry resistance.
+    """Surface velocity of the pinion, and the forces at both base circles without friction.
 
     The forces of the pairs are noted, with the limits of their friction.
     """
@@ -195,8 +195,8 @@ def forces_at_shafts(m: Model, t: float, y: Floats) -> tuple[float, float, float
 def friction_at_gear(m: Model, t: float, y: Floats) -> tuple[float, float, tuple[float, float, float]]:
     """Force of the flanks' friction on the gear, what resists it besides its hub, and the loads of hubs and pin.
 
-    What acts on its shaft and dry resistance resist it. At rest, where the shares of several elements are not unique,
-    the flanks' friction is zero and the dry resistance takes what it can.
+    What acts on its shaft and its set-valued laws resist it. At rest, where the shares of several elements are not
+    unique, the flanks' friction is zero and the laws take what they can.
     """
     surface_speed, pinion, gear = forces_at_shafts(m, t, y)
     shafts = solve_shafts(m, t, y, surface_speed, pinion, gear)
@@ -209,7 +209,7 @@ def friction_at_gear(m: Model, t: float, y: Floats) -> tuple[float, float, tuple
         if m.state.hold == HELD_PAIR and noted.history == m.state.held_pair:
             friction += shafts.held * second
     if m.state.hold == AT_REST or m.state.hold == HELD_GEAR:
-        dry = dry_force(m, t, y)
-        held = min(max(gear + friction, -dry), dry)
+        limit = own_limit(m, LOAD, t, y, y[W])
+        held = min(max(gear + friction, -limit), limit)
         return friction, held - with_acting(m, t, y, -0.0), loads
     return friction, resisting_force(m, t, y), loads

@@ -1,10 +1,10 @@
 r"""The energy balance of a run, kept at every accepted step without evaluating a force.
 
-The works of drive, drag, dry resistance and mesh damping need torques and speeds only. The work of a constant torque is
-exactly torque times angle, and so is that of the drag at a mean speed; the rest is integrated with the powers and their
-rates at both ends (corrected trapezoidal rule, an error of fifth order in the length). Drag and damping vary most and
-cost least to evaluate, so they are integrated over every step, with the travels too (an error of seventh order). The
-others are integrated over several steps at once; a turning point in between is no kink of their powers.
+The works of drive, drag, laws of the shafts and mesh damping need torques and speeds. The work of a constant torque
+is exactly torque times angle, and so is that of the drag at a mean speed; the rest is integrated with the powers and
+their rates at both ends (corrected trapezoidal rule, an error of fifth order in the length). Drag and damping vary most
+and cost least to evaluate, so they are integrated over every step, with the travels too (an error of seventh order).
+The others are integrated over several steps at once; a turning point in between is no kink of their powers.
 
 What the contacts store is a function of the gaps and of the joined heights (`gearidae.contact.kernels.energy`). A
 pair on a
@@ -19,7 +19,7 @@ along the path of contact, and with it the number of asperities in touch, while 
 does no work for that: the model has no force for it (Teodorescu et al. 2009, Eqs. 4-6 and 13). It is named here, the
 work of the changing radius, and integrated like the others. So
 
-    drive + radius = drag + dry + friction + damping + adhesion + losses of laws + stored + kinetic
+    drive + radius = drag + friction + damping + adhesion + losses of laws + stored + kinetic
 
 but for the errors of integration, which is what the balance's residual measures.
 
@@ -38,7 +38,7 @@ from gearidae.engine.compiling import SOLVER
 from gearidae.engine.events.cutoff import cutoff_guard, watches_cutoff
 from gearidae.engine.events.mesh_marks import crossed_mark
 from gearidae.engine.events.pair_events import newly_stretched
-from gearidae.engine.events.sliding import dry_guard
+from gearidae.engine.events.sliding import friction_guard
 from gearidae.engine.laws.pairs import LOSING, book_losses_of_mesh, radius_power, stored_energy
 from gearidae.engine.model.addresses import model_at
 from gearidae.engine.model.state import DRIVE, LOAD, MATERIALS, PHASE, Floats, Model, U, V, W
@@ -60,8 +60,8 @@ from gearidae.formulas.quadrature import (
     integral,
     torque_work,
 )
-from gearidae.laws.shaft.own import last_on_its_side
-from gearidae.laws.shafts import book_losses, driving_force, driving_rate, is_constant, stored_by_laws
+from gearidae.laws.frictions import begin_friction, book_friction, book_stop, resists
+from gearidae.laws.shafts import book_losses, driving_along, driving_force, is_constant, stored_by_laws
 
 ORDER: Final = 4
 """Order of the quadrature."""
@@ -109,8 +109,12 @@ def begin(m: Model, t: float, y: Floats, yp: Floats) -> None:
     if m.scene.orbit != 0.0:
         begin_orbit(m, t, y, yp)
     q.pinion_travel, q.pinion_speed, q.pinion_acceleration = _pinion(m, y, yp)
-    q.drive, q.drive_rate = _torque(m, DRIVE, t, y, q.pinion_speed, q.pinion_acceleration)
-    q.load, q.load_rate = _torque(m, LOAD, t, y, y[W], yp[W])
+    angle = torque_angle(m, DRIVE, y[U], y[PHASE])
+    q.drive, q.drive_rate = driving_along(m, DRIVE, t, angle, q.pinion_speed, q.pinion_acceleration)
+    if resists(m, DRIVE):
+        begin_friction(m, DRIVE, t, angle, q.pinion_speed, q.pinion_acceleration)
+    if resists(m, LOAD):
+        begin_friction(m, LOAD, t, torque_angle(m, LOAD, y[U], y[PHASE]), y[W], yp[W])
     _sample_radius_power(m, t, y)
 
 
@@ -170,7 +174,7 @@ def _can_wait(m: Model, t: float, y: Floats) -> bool:
         return False
     if in_flight(m) or t - m.work.quadrature.time > m.scene.quadrature_time:
         return False
-    if crossed_mark(m, y) or (m.scene.dry != 0 and dry_guard(m, t, y) <= 0.0):
+    if crossed_mark(m, y) or (m.scene.friction.may_stick != 0 and friction_guard(m, t, y) <= 0.0):
         return False
     for i in range(list_known(m, y)):
         k = m.work.known[i]
@@ -197,8 +201,8 @@ def resume(m: Model, t: float, y: Floats, crossed: bool, joined: bool) -> None:
         Whether an adhesion loss has been added, where that of elastic contacts jumps.
     """
     q = m.work.quadrature
-    if m.scene.dry != 0 and q.time == t:
-        m.state.energy.dry_loss += q.kinetic - kinetic_energy(m, y)
+    if resists(m, LOAD) and q.time == t:
+        book_stop(m, LOAD, q.kinetic - kinetic_energy(m, y))
     if crossed or (joined and m.scene.nodes > 0):
         _sample_radius_power(m, t, y)
 
@@ -231,10 +235,10 @@ def _accumulate(m: Model, t: float, y: Floats, yp: Floats, now: bool) -> None:
     w, w_rate = y[W], yp[W]
     gear = y[PHASE] / m.scene.phase_rate
     speed, exchange, error = _accumulate_drive(m, h, t, y, yp)
-    if m.scene.dry != 0:
-        dry, more = _accumulate_dry(m, h, t, gear - q.gear_travel, y, w_rate)
-        error += more
-        exchange += dry
+    if resists(m, LOAD):
+        angle = torque_angle(m, LOAD, y[U], y[PHASE])
+        speeds = Ends(q.gear_speed, q.gear_acceleration, w, w_rate)
+        exchange, error = book_friction(m, LOAD, h, t, angle, gear - q.gear_travel, speeds, (exchange, error))
     q.gear_travel, q.gear_speed, q.gear_acceleration = gear, w, w_rate
     power, rate = radius_power(m, t, y, w_rate)
     radius = integral(h, q.radius_power, power, q.radius_power_rate, rate) + q.length_work
@@ -257,43 +261,28 @@ def _accumulate_kinetic(m: Model, kinetic: float, exchanged: float) -> None:
 
 @compiled(inline=True)
 def _accumulate_drive(m: Model, h: float, t: float, y: Floats, yp: Floats) -> tuple[float, float, float]:
-    """Add the work of the drive; return the pinion's speed, the work's magnitude and its error estimate."""
+    """Add the work of the drive, and the losses on the pinion's shaft.
+
+    Returns
+    -------
+    speed : float
+        Of the pinion.
+    exchange, error : float
+        Magnitude of work and losses, and its error estimate.
+    """
     q = m.work.quadrature
     pinion, speed, acceleration = _pinion(m, y, yp)
-    force, rate = _torque(m, DRIVE, t, y, speed, acceleration)
-    work, error = torque_work(
-        h,
-        pinion - q.pinion_travel,
-        Ends(q.drive, q.drive_rate, force, rate),
-        Ends(q.pinion_speed, q.pinion_acceleration, speed, acceleration),
-    )
+    travel, angle = pinion - q.pinion_travel, torque_angle(m, DRIVE, y[U], y[PHASE])
+    speeds = Ends(q.pinion_speed, q.pinion_acceleration, speed, acceleration)
+    force, rate = driving_along(m, DRIVE, t, angle, speed, acceleration)
+    work, error = torque_work(h, travel, Ends(q.drive, q.drive_rate, force, rate), speeds)
+    exchange = abs(work)
+    if resists(m, DRIVE):
+        exchange, error = book_friction(m, DRIVE, h, t, angle, travel, speeds, (exchange, error))
     q.drive, q.drive_rate = force, rate
     q.pinion_travel, q.pinion_speed, q.pinion_acceleration = pinion, speed, acceleration
     m.state.energy.drive_work += work
-    return speed, abs(work), error
-
-
-@compiled(inline=True)
-def _accumulate_dry(
-    m: Model, h: float, t: float, travel: float, y: Floats, w_rate: float
-) -> tuple[float, float]:
-    """Add the loss by dry resistance; return its magnitude and its error estimate."""
-    q, w = m.work.quadrature, y[W]
-    force, rate = _torque(m, LOAD, t, y, w, w_rate)
-    if min(force, q.load) < 0.0:  # a dry resistance never pushes: what is left of a straight line
-        most = max(force, q.load, 0.0)
-        dry = 0.5 * most * most / abs(force - q.load) * travel if most > 0.0 else 0.0
-        error = abs(dry)
-    else:
-        dry, error = torque_work(
-            h,
-            travel,
-            Ends(q.load, q.load_rate, force, rate),
-            Ends(q.gear_speed, q.gear_acceleration, w, w_rate),
-        )
-    q.load, q.load_rate = force, rate
-    m.state.energy.dry_loss += m.state.slip * dry
-    return abs(m.state.slip * dry), error
+    return speed, exchange, error
 
 
 @compiled(inline=True)
@@ -397,16 +386,3 @@ def _pinion(m: Model, y: Floats, yp: Floats) -> tuple[float, float, float]:
     speed, e = speed_and_error(m, y)
     travel = y[U] + y[PHASE] / m.scene.phase_rate + e.value
     return travel, speed, pinion_acceleration(e, speed, y[W], yp[V], yp[W])
-
-
-@compiled
-def _torque(
-    m: Model, shaft: int, t: float, y: Floats, speed: float, acceleration: float
-) -> tuple[float, float]:
-    """A torque over its base radius, and its rate along the motion of its shaft."""
-    if is_constant(m, shaft):
-        return m.scene.torque[shaft].constant, 0.0
-    angle = torque_angle(m, shaft, y[U], y[PHASE])
-    then, angle, speed = last_on_its_side(m, shaft, t, angle, speed, acceleration)
-    rate = driving_rate(m, shaft, then, angle, speed, acceleration)
-    return driving_force(m, shaft, then, angle, speed) + (t - then) * rate, rate

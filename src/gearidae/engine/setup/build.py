@@ -51,6 +51,7 @@ from gearidae.engine.setup.checkpoint import scene_digest
 from gearidae.engine.setup.problem import Problem
 from gearidae.engine.setup.start import AT_ONCE, Start
 from gearidae.engine.setup.tables import Tables
+from gearidae.laws.frictions import FRICTION_LAWS, has_friction_law
 from gearidae.laws.pairs import number_of_mesh
 from gearidae.laws.shaft.own import law_address, switch_address
 from gearidae.laws.shaft.schedule import (
@@ -146,7 +147,6 @@ def _gear_problem(scene: GearScene, nodes: Nodes | None, begin: Start) -> Proble
     s.curvature_force = int(mesh.radius_force)
     _set_mesh_constants(s, scene)
     grid = choose_model(s, scene, _gear_bounds(s, scene), nodes)
-    s.dry = int(load.is_dry)
     widest = math.sqrt(0.25 / float(s.sum_curvature))
     unit_length = math.sqrt(2.0 * geometry.base_pitch * sigma)
     if scene.contact.is_discrete:
@@ -191,7 +191,7 @@ def _gear_problem(scene: GearScene, nodes: Nodes | None, begin: Start) -> Proble
     skipped = {
         "static_error": int(not mesh.static_error),
         "harmonics": int(not drive.harmonic and not load.harmonic),
-        "dry_resistance": int(s.dry == 0),
+        **{law.holders[0].name: int(not has_friction_law(scene, LOAD, law)) for law in FRICTION_LAWS},
     }
     return _begun(model, scene, [u, -float(error.rate), phase, w], skipped)
 
@@ -379,7 +379,7 @@ def _begun(m: Model, scene: Scene, motion: list[float], skipped: dict[str, int])
         (ELASTIC, s.nodes > 0),
         (EXPOSURES, s.bins > 0),
         (POPULATION, s.population.flanks > 0),
-        (FRICTION, s.friction.any_dry != 0 or s.orbit != 0.0),
+        (FRICTION, s.friction.may_stick != 0 or s.orbit != 0.0),
         (IMPACTS, scene.run.impacts),
     )
     for part, wanted in parts:

@@ -12,8 +12,9 @@ from gearidae.asperities.tip import asperity_of
 from gearidae.contact.kernels.energy import loading_pieces
 from gearidae.contact.kernels.law import N_LOADING, Kernel, law_table
 from gearidae.engine.model.record_types import GEAR_HUB, PIN, PINION_HUB
-from gearidae.engine.model.state import MATERIALS, Record
+from gearidae.engine.model.state import DRIVE, LOAD, MATERIALS, Record
 from gearidae.engine.setup.tables import Tables
+from gearidae.laws.frictions import bits_of, friction_laws_of
 from gearidae.mesh.involute import Geometry
 from gearidae.records.standing import Holding
 from gearidae.scene import MATERIAL_NAMES, GearScene, Scene, Surface
@@ -31,9 +32,15 @@ def add_friction(s: Record, scene: GearScene) -> None:
     """
     friction = s.friction
     friction.joints, friction.flanks = int(bool(joints(scene))), int(has_flank_friction(scene))
-    friction.any_friction = int(friction.joints != 0 or friction.flanks != 0)
-    friction.any_dry = int(friction.any_friction != 0 or s.dry != 0)
-    friction.holding = Holding.DRY_RESISTANCE if s.dry != 0 else 0
+    for shaft in (DRIVE, LOAD):
+        laws = friction_laws_of(scene, shaft)
+        s.torque[shaft].resists = bits_of(laws)
+        for holder in (holder for law in laws for holder in law.holders):
+            friction.holding |= holder.number
+    # a gear that is held by its own laws alone has a short way, through the motion and at events
+    friction.pinion_rubs = int(s.torque[DRIVE].resists != 0)
+    friction.any_friction = int(friction.joints != 0 or friction.flanks != 0 or friction.pinion_rubs != 0)
+    friction.may_stick = int(friction.any_friction != 0 or s.torque[LOAD].resists != 0)
     friction.holding |= Holding.FLANK_FRICTION if friction.flanks != 0 else 0
     s.noting = int(scene.run.exposures > 0 or friction.any_friction != 0)
     if friction.any_friction == 0:

@@ -8,6 +8,7 @@ import numpy as np
 
 from gearidae.engine.model.state import DRIVE, LOAD, SPEED, STOPS, Floats, Record
 from gearidae.engine.setup.tables import Tables
+from gearidae.laws.frictions import LAWS_OF_SHAFTS
 from gearidae.laws.law import number_of
 from gearidae.laws.shaft.harmonic import common_period, pack_harmonics
 from gearidae.laws.shaft.own import largest_torque, law_knots
@@ -123,11 +124,11 @@ def add_torques(s: Record, tables: Tables, scene: GearScene, begin: float) -> No
 def _add_coefficients(s: Record, scene: GearScene, shaft: int, table: Drive | Load, radius: float) -> None:
     """Set the coefficients of the laws of a shaft from the tables of gears, drive and load, and which laws act."""
     torque, speed, force = s.torque[shaft], float(s.length_unit) / float(s.time_unit), float(s.force_unit)
+    for constant in (constant for law in LAWS_OF_SHAFTS for constant in law.coefficients):
+        of_gears = constant.key is not None
+        value = number_of(scene, shaft, constant.name) if of_gears else getattr(table, constant.name, 0.0)
+        torque[constant.name] = constant.scaled(value, radius, speed, force)
     for law in SHAFT_LAWS:
-        for constant in law.coefficients:
-            of_gears = constant.key is not None
-            value = number_of(scene, shaft, constant.name) if of_gears else getattr(table, constant.name, 0.0)
-            torque[constant.name] = constant.scaled(value, radius, speed, force)
         if has_law(scene, shaft, law):
             s.guarded |= int(law.guard is not None)
             torque.takes_angle |= int(law.by_angle is not None)

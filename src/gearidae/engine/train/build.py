@@ -13,7 +13,7 @@ import numpy as np
 from gearidae.engine.compiling import TRAIN, make_part_ready
 from gearidae.engine.events.sliding import STILL
 from gearidae.engine.model.addresses import Addresses
-from gearidae.engine.model.state import DRIVE, Floats, Model, Record
+from gearidae.engine.model.state import DRIVE, LOAD, Floats, Model, Record
 from gearidae.engine.pairs.mesh_error import mesh_error
 from gearidae.engine.setup.build import make_problem
 from gearidae.engine.setup.checkpoint import scene_digest
@@ -25,6 +25,7 @@ from gearidae.engine.train.loop import LOOKS
 from gearidae.engine.train.observe import kinetic_energy_of, write_stored
 from gearidae.engine.train.start import begin_train
 from gearidae.errors import SceneError
+from gearidae.laws.frictions import resists
 from gearidae.records import first_sample
 from gearidae.scene import Drive, GearScene, Load
 from gearidae.scene.joints import PIN_KEYS, Joint, pushes, train_pin
@@ -182,7 +183,7 @@ def _pair(scene: TrainScene, train: Train, k: int, drive: Drive, load: Load) -> 
 
 def _alone(m: Model) -> Addresses:
     """Have the model of a pair be one of a mesh: friction is that of the train's shafts, and forces are noted."""
-    m.scene.friction.any_dry = m.scene.friction.any_friction = 0
+    m.scene.friction.may_stick = m.scene.friction.any_friction = 0
     m.scene.noting = 1
     return Addresses(m)
 
@@ -265,7 +266,7 @@ def _add_train(
     record, drive, run = tm.train[0], scene.drive, scene.run
     record.drive, record.load, record.judged = train.drive, train.load, judged_shaft(scene)
     record.drive_mesh, record.load_mesh = _ends(train)
-    if problems[record.load_mesh].model.scene.dry != 0:
+    if resists(problems[record.load_mesh].model, LOAD):
         tm.shafts[train.load]["rubs"] = 1
     if pushes(drive):
         record.pushes, record.cosine, record.sine = (

@@ -121,7 +121,7 @@ def set_limit(tm: TrainModel, i: int) -> float:
     hub = shaft.hub_arm * shaft.hub + shaft.hub_torque
     shaft.limit = shaft.resistance + hub
     if i == train.load:
-        shaft.limit += train.dry
+        shaft.limit += train.load_limit
     if i == train.drive:
         shaft.limit += train.pin_arm * train.pin
     return hub

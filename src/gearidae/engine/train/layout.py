@@ -169,7 +169,7 @@ TRAIN: Final = record_type(
     ("flight_steps", INT),
     # of the last evaluation
     ("drive_torque", REAL),  # [N m]
-    ("dry", REAL),  # limit of the load's dry resistance [N m]
+    ("load_limit", REAL),  # limit of the set-valued laws of the load [N m]
     ("drags", REAL),  # what acts on the load's shaft besides [N m]
     ("pin", REAL),  # force of the pin [N]
     ("elements", INT),  # tooth pairs that friction lets roll, and with any the shafts that are held

@@ -29,6 +29,7 @@ from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.train.ageing import set_joint_friction
 from gearidae.engine.train.flanks import add_flank_friction, hold_elements, set_limit
 from gearidae.engine.train.layout import OF_MESH, OF_SHAFT, OF_TRAIN, TrainModel
+from gearidae.laws.frictions import law_limit, resists
 from gearidae.laws.shaft.own import law_force
 from gearidae.laws.shafts import acting, driving_force, is_constant, pinion_force
 
@@ -147,7 +148,7 @@ def _add_torques(tm: TrainModel, t: float, y: Floats) -> None:
     mesh_state(tm, train.load_mesh, m, y, own)
     time, angle = t / mesh.time_unit, torque_angle(m, LOAD, own[U], own[PHASE])
     unit = mesh.force_unit * mesh.driven_radius
-    train.dry = max(driving_force(m, LOAD, time, angle, own[W]), 0.0) * unit if m.scene.dry != 0 else 0.0
+    train.load_limit = law_limit(m, LOAD, time, angle, own[W]) * unit if resists(m, LOAD) else 0.0
     train.drags = 0.0
     if m.scene.torque[LOAD].acts != 0:
         train.drags = acting(m, LOAD, time, angle, own[W], -0.0) * unit
@@ -190,7 +191,7 @@ def motion(tm: TrainModel, t: float, y: Floats, dy: Floats) -> None:
     if train.balance != 0:
         last = 2 * n + OF_SHAFT * n + OF_MESH * len(tm.meshes)
         dy[last] = train.drive_torque * y[n + train.drive]
-        dy[last + 1] = train.dry * shafts[train.load].slip * y[n + train.load]
+        dy[last + 1] = train.load_limit * shafts[train.load].slip * y[n + train.load]
         dy[last + 2] = -train.drags * y[n + train.load]
         dy[last + 3] = train.pin_arm * train.pin * shafts[train.drive].slip * y[n + train.drive]
 

@@ -59,9 +59,9 @@ def observe_train(tm: TrainModel, t: float, y: Floats, row: Floats) -> None:
         row[at + 4] = touching
         at += _MESH_COLUMNS
     shaft = tm.shafts[train.load]
-    resistance = train.dry * shaft.slip
+    resistance = train.load_limit * shaft.slip
     if shaft.slip == 0.0 and shaft.rubs != 0:
-        resistance = min(max(shaft.torque, -train.dry), train.dry)
+        resistance = min(max(shaft.torque, -train.load_limit), train.load_limit)
     row[at], row[at + 1], row[at + 2] = train.drive_torque, resistance - train.drags, train.pin
     row[at + 3] = tm.joints[n].friction
 

@@ -295,7 +295,7 @@ def _totals(problem: TrainProblem) -> TrainTotals:
     of_shafts = works[: OF_SHAFT * n].reshape(n, OF_SHAFT)
     of_meshes = works[OF_SHAFT * n : OF_SHAFT * n + OF_MESH * meshes].reshape(meshes, OF_MESH)
     of_train = works[OF_SHAFT * n + OF_MESH * meshes :]
-    drive, dry, drags, pin = (float(x) for x in of_train[:OF_TRAIN])
+    drive, resisted, drags, pin = (float(x) for x in of_train[:OF_TRAIN])
     rubbed = of_train[OF_TRAIN:].copy() if tm.train[0].flanks else np.zeros(meshes)
     held = np.array([bool(shaft["rubs"]) and shaft["slip"] == 0.0 for shaft in tm.shafts])
     rest = tm.shafts["rest_time"] + np.where(held, tm.train[0].time - tm.shafts["rest_begin"], 0.0)
@@ -332,14 +332,14 @@ def _totals(problem: TrainProblem) -> TrainTotals:
         + of_meshes[:, :2].sum()
         + rubbed.sum()
         + adhesion.sum()
-        + dry
+        + resisted
         + drags
         + pin
     )
     energy = {
         "drive_work": drive,
         "radius_work": float(radius.sum()),
-        "load_work": dry + drags,
+        "load_work": resisted + drags,
         "kinetic_change": kinetic,
         "stored_change": float((stored - before).sum()),
         "pin_loss": pin,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from gearidae.compiled import compiled
 from gearidae.contact.history import extreme_gap
 from gearidae.engine.model.checkpoint_record import WINDOWS
-from gearidae.engine.model.state import PHASE, Floats, Model, Record, U, V, W
+from gearidae.engine.model.state import LOAD, PHASE, Floats, Model, Record, U, V, W
 from gearidae.engine.motion.observe import separation
 from gearidae.engine.observers.extremes.forces import first_force, follow_force, force_of_motion, note_corner
 from gearidae.engine.observers.extremes.speeds import (
@@ -18,6 +18,7 @@ from gearidae.engine.observers.extremes.speeds import (
 )
 from gearidae.engine.observers.standing import tracking as standing
 from gearidae.engine.pairs.tooth_pairs import rigid_separation
+from gearidae.laws.frictions import resists
 
 
 @compiled(inline=True)
@@ -77,14 +78,14 @@ def note_present(m: Model, y: Floats) -> None:
 
 @compiled
 def resume(m: Model, t: float, y: Floats) -> None:
-    """Note that the gear has been brought to rest at once, and that dry resistance holds it."""
+    """Note that the gear has been brought to rest at once, and that a law of its shaft holds it."""
     p = m.work.track.point[m.work.track.last]
     if m.scene.follow.gear != 0:
         standing.resume(m, t, y)
     if y[W] <= 0.0 < p.speed:
         come_to_stand(m, t, y[PHASE] + m.state.whole_pitches, is_pulled_back(m, t, y))
     p.speed = y[W]
-    if m.scene.dry != 0 and m.state.slip == 0.0:
+    if resists(m, LOAD) and m.state.slip == 0.0:
         note_hold(m, t)
 
 

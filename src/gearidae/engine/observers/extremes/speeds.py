@@ -12,14 +12,15 @@ from typing import Final
 from gearidae.compiled import compiled, compiled_once
 from gearidae.contact.history import extreme_gap
 from gearidae.engine.compiling import SOLVER
-from gearidae.engine.friction.forces import NO_FORCE, dry_force
+from gearidae.engine.friction.forces import NO_FORCE, own_limit
 from gearidae.engine.laws.pairs import mesh_force
 from gearidae.engine.model.checkpoint_record import WINDOWS
-from gearidae.engine.model.state import Floats, Model, Record, U, V
+from gearidae.engine.model.state import LOAD, Floats, Model, Record, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
 from gearidae.engine.observers.standing.torques import slowest_period
 from gearidae.formulas.interpolation import cubic
 from gearidae.formulas.roots import HALVINGS, extremum_of_cubic, zero_of_cubic
+from gearidae.laws.frictions import resists
 from gearidae.records import RUN_PARTS
 
 HELD_WITHIN: Final = 0.5
@@ -101,10 +102,10 @@ def _falls_to_zero(h: float, w0: float, rate0: float, w1: float, rate1: float) -
 
 @compiled_once(SOLVER)
 def is_pulled_back(m: Model, t: float, y: Floats) -> bool:
-    """Whether the drive flank pulls a gear back whose speed falls to zero, by more than dry resistance holds."""
+    """Whether the drive flank pulls a gear back whose speed falls to zero, by more than laws of its shaft hold."""
     mesh = forces_at(m, t, y)
     pull = -(mesh.force + mesh.relief)
-    held_up_to = mesh_force(m, y[V], dry_force(m, t, y) + NO_FORCE if m.scene.dry != 0 else 0.0)
+    held_up_to = mesh_force(m, y[V], own_limit(m, LOAD, t, y, y[W]) + NO_FORCE if resists(m, LOAD) else 0.0)
     return bool(y[U] > 0.0 and pull > max(held_up_to, 0.0))
 
 
@@ -125,7 +126,7 @@ def come_to_stand(m: Model, t: float, position: float, pulled: bool) -> None:
 
 @compiled
 def note_hold(m: Model, t: float) -> None:
-    """Note that dry resistance holds the gear: adhesion does not, from there on."""
+    """Note that a law of its shaft holds the gear: adhesion does not, from there on."""
     e = m.state.extremes
     if e.turn_backs > 1:
         e.adhering += t - e.turn_back_time

@@ -1,10 +1,10 @@
 """Free gears: both shafts under their torques, joined without backlash, adhesion and friction.
 
-    (m1 + m2) w' = F1 - F2 + what acts on either shaft,    with the dry part of F2 set-valued at w = 0,
+    (m1 + m2) w' = F1 - F2 + what acts on either shaft,    with set-valued laws of both shafts at w = 0,
 
 scaled and over the base radii. They are at rest at a zero of the real gear's speed and have its angles. The equation is
 solved by LSODA (Petzold, SIAM J. Sci. Stat. Comput. 4, 1983), which a stiff drive does not slow down, over windows that
-end at knots, and where the speed falls to zero under a dry resistance. Windows follow from the torques alone, not from
+end at knots, and where the speed falls to zero under a set-valued law. Windows follow from the torques alone, not from
 when they are asked for: what is known of free gears at a time is the same whatever the blocks of the run are.
 """
 
@@ -126,7 +126,7 @@ class FreeGears:
         self._address, self._knots, self._zero = address, knots, zero
         self._unit, self._end = float(m.scene.time_unit), float(m.scene.end)
         self._torque = float(m.scene.force_unit * m.scene.gear_radius)
-        self._dry, step = bool(m.scene.dry), float(m.scene.free_step)
+        self._may_stop, step = bool(m.scene.torque["resists"].any()), float(m.scene.free_step)
         self._span = self._longest = STEPS * step if step > 0.0 else math.inf
         self._largest_step = LONGEST_STEP * step
         self._grid = _COARSE if len(knots) > MANY_KNOTS else _GRID
@@ -262,7 +262,7 @@ class FreeGears:
             self._span = span
         if steps > 3 * len(times):  # what is kept has to follow its steps
             times, y, _ = self._solution(rates, start, np.linspace(0.0, span, steps))
-        turned = np.flatnonzero(y[1:, 1] * sign <= 0.0) if self._dry else np.empty(0, np.int64)
+        turned = np.flatnonzero(y[1:, 1] * sign <= 0.0) if self._may_stop else np.empty(0, np.int64)
         last = int(turned[0]) + 1 if turned.size else len(times)
         ends = np.minimum(t + times[1:last], piece[1]).tolist()
         if last == len(times) and span == piece[1] - t:

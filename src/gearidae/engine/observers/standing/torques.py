@@ -11,6 +11,7 @@ from gearidae.engine.friction.forces import NO_FORCE
 from gearidae.engine.model.addresses import model_at
 from gearidae.engine.model.state import DRIVE, LOAD, SCHEDULES, Model
 from gearidae.formulas.roots import HALVINGS, bisected
+from gearidae.laws.frictions import law_limit, least_law_limit, resists
 from gearidae.laws.shaft.own import SHIFT
 from gearidae.laws.shaft.schedule import straight_until
 from gearidae.laws.shafts import acting, driving_force, driving_range
@@ -31,16 +32,17 @@ def _angle(m: Model, shaft: int, position: float, pinion_lead: float) -> float:
 
 
 @compiled
-def dry_load(m: Model, t: float, position: float) -> float:
-    """Dry resistance of the gear, scaled."""
-    if m.scene.dry == 0:
-        return 0.0
-    return max(driving_force(m, LOAD, t, _angle(m, LOAD, position, 0.0), 0.0), 0.0)
+def resistance(m: Model, t: float, position: float, pinion_lead: float) -> float:
+    """Limit of the set-valued laws of both shafts at rest, scaled."""
+    total = law_limit(m, LOAD, t, _angle(m, LOAD, position, 0.0), 0.0) if resists(m, LOAD) else 0.0
+    if resists(m, DRIVE):
+        total += law_limit(m, DRIVE, t, _angle(m, DRIVE, position, pinion_lead), 0.0)
+    return float(total)
 
 
 @compiled
 def _acting(m: Model, t: float, position: float, pinion_lead: float, speed: float) -> float:
-    """What acts on both shafts besides the driving torque and the dry resistance, scaled."""
+    """What acts on both shafts besides the driving torque and set-valued laws, scaled."""
     m.work.elsewhere = 1  # laws have no memory of these shafts
     force = acting(m, LOAD, t, _angle(m, LOAD, position, pinion_lead), speed, -0.0)
     if m.scene.torque[DRIVE].acts != 0:
@@ -51,15 +53,15 @@ def _acting(m: Model, t: float, position: float, pinion_lead: float, speed: floa
 
 @compiled_once(SOLVER)
 def push(m: Model, t: float, position: float, pinion_lead: float, speed: float) -> float:
-    """What drives gears that turn as one against the dry resistance, scaled."""
+    """What drives gears that turn as one against the set-valued laws, scaled."""
     drive = driving_force(m, DRIVE, t, _angle(m, DRIVE, position, pinion_lead), speed)
     return float(drive + _acting(m, t, position, pinion_lead, speed))
 
 
 @compiled
 def excess(m: Model, t: float, position: float, pinion_lead: float) -> float:
-    """Size of what drives a gear at rest, less the dry resistance, scaled."""
-    return abs(push(m, t, position, pinion_lead, 0.0)) - dry_load(m, t, position)
+    """Size of what drives a gear at rest, less what resists it, scaled."""
+    return abs(push(m, t, position, pinion_lead, 0.0)) - resistance(m, t, position, pinion_lead)
 
 
 @compiled
@@ -142,14 +144,15 @@ def free_acceleration(
     m = model_at(address)
     kept = _enter_piece(m, begin, end)
     rate = m.scene.phase_rate
-    force = push(m, t, position, pinion_lead, speed / rate) - sign * dry_load(m, t, position)
+    force = push(m, t, position, pinion_lead, speed / rate)
+    force -= sign * resistance(m, t, position, pinion_lead)
     _go_back(m, kept)
     return rate * force / (1.0 / m.scene.pinion_inverse_mass + 1.0 / m.scene.gear_inverse_mass)
 
 
 @compiled
 def _rests(t: float, m: Model, position: float, pinion_lead: float) -> bool:
-    """Whether the dry resistance holds a gear at rest."""
+    """Whether the set-valued laws hold a gear at rest."""
     return bool(excess(m, t, position, pinion_lead) - NO_FORCE <= 0.0)
 
 
@@ -160,7 +163,7 @@ _end_of_rest = bisected(_rests)
 def rest_of(
     address: int, piece: tuple[float, float], t: float, at: tuple[float, float]
 ) -> tuple[float, float]:
-    """Time from `t` on at which a drive overcomes the dry resistance of gears at rest, and what drives them then.
+    """Time from `t` on at which a drive overcomes what resists gears at rest, and what drives them then.
 
     At most that of the end of the piece, with 0.
 
@@ -193,7 +196,7 @@ def rest_of(
 def drive_between(
     address: int, piece: tuple[float, float], t: float, to: float, at: tuple[float, float]
 ) -> tuple[float, float]:
-    """By how much, scaled, and how long, over tau, the drive exceeds the dry load of a gear that stands.
+    """By how much, scaled, and how long, over tau, the drive exceeds what resists a gear that stands.
 
     Arguments as for `rest_of`.
     """
@@ -235,8 +238,10 @@ def _bound_of_excess(m: Model, t: float, at: tuple[float, float]) -> float:
     """Bound of the excess at rest at a time: harmonics have their amplitudes, laws their present values."""
     low, high = driving_range(m, DRIVE, t, t, _angle(m, DRIVE, at[0], at[1]))
     held = _acting(m, t, at[0], at[1], 0.0)
-    load = driving_range(m, LOAD, t, t, _angle(m, LOAD, at[0], 0.0))[0] if m.scene.dry != 0 else 0.0
-    return max(abs(low + held), abs(high + held)) - max(load, 0.0)
+    load = least_law_limit(m, LOAD, t, _angle(m, LOAD, at[0], 0.0)) if resists(m, LOAD) else 0.0
+    if resists(m, DRIVE):
+        load += least_law_limit(m, DRIVE, t, _angle(m, DRIVE, at[0], at[1]))
+    return max(abs(low + held), abs(high + held)) - load
 
 
 @compiled

@@ -9,6 +9,7 @@ from typing import Any
 from gearidae.engine.model.record_types import AT_REST, HELD_GEAR
 from gearidae.engine.model.state import Floats, Model
 from gearidae.engine.observers.standing.judge import Judge, Standstill
+from gearidae.laws.frictions import HELD_BY_LAWS
 from gearidae.records.standing import NOTICED, SHORT_STANDSTILL, Holding
 
 
@@ -99,13 +100,13 @@ def _numbers(row: Standstill, holding: Holding) -> list[float]:
 
 
 def _holding(m: Model, at_rest: bool, held: float, in_well: bool) -> Holding:
-    """What holds a gear that stands: dry friction, if it is at rest; adhesion or its well, if that is not enough."""
-    dry = Holding(int(m.scene.friction.holding))
+    """What holds a gear that stands: friction, if it is at rest; adhesion or its well, if that is not enough."""
+    rubbing = Holding(int(m.scene.friction.holding))
     if in_well:
         if at_rest:
-            return dry
+            return rubbing
         return Holding.SHAFT_TIE if m.scene.tied != 0 else Holding.DRIVE_WELL
-    holding = dry if at_rest else Holding(0)
-    if not at_rest or (held > 0.0 and not dry & ~Holding.DRY_RESISTANCE):
+    holding = rubbing if at_rest else Holding(0)
+    if not at_rest or (held > 0.0 and not rubbing & ~Holding(HELD_BY_LAWS)):
         holding |= Holding.ADHESION
     return holding
