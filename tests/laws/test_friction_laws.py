@@ -58,7 +58,7 @@ def test_the_smallest_limit_at_rest_is_that_of_harmonics_at_their_worst(waves):
     assert least_law_limit(waves, LOAD, 0.3, 0.0) == 0.0
     steady = make_problem(PLAIN.replace(WAVE | {"load.torque": "50 pN m"})).model
     unit = float(steady.scene.force_unit * steady.scene.gear_radius)
-    assert least_law_limit(steady, LOAD, 0.3, 0.0) * unit == pytest.approx(2e-11, rel=1e-12)
+    assert least_law_limit(steady, LOAD, 0.3, 0.0) * unit == pytest.approx(2e-11, rel=1e-12, abs=0)
 
 
 def model_with(constant):

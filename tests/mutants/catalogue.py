@@ -621,7 +621,7 @@ MUTANTS = (
     Mutant(
         "a gear that holds with the friction of its hub alone, without the dry load",
         "engine/friction/forces.py",
-        "margin = dry + joints.gear_hub * loads.gear - abs(pairs.gear)",
+        "margin = second_limit + joints.gear_hub * loads.gear - abs(pairs.gear)",
         "margin = joints.gear_hub * loads.gear - abs(pairs.gear)",
         ("engine/test_stick_slip.py", "engine/test_friction.py", "engine/test_hub_load.py"),
     ),
