@@ -80,6 +80,9 @@ class FrictionLaw:
     mean : (scene, shaft, average) -> float
         Mean limit over a run [N m] of a scene that has it; ``average(scene, constant, knots)`` is the mean size of a
         constant and a schedule. In Python.
+    largest : (scene, shaft) -> float
+        Bound of the limit [N m] of a scene that has it, by which the run's unit of force is chosen; left out where the
+        torques of drive and load have it already. In Python.
     """
 
     name: str
@@ -96,3 +99,4 @@ class FrictionLaw:
     key: str = ""
     there: Callable[[Any, int], bool] | None = None
     mean: Callable[[Any, int, Callable[..., float]], float] | None = None
+    largest: Callable[[Any, int], float] | None = None

@@ -140,3 +140,8 @@ def mean_limit(scene: Any, shaft: int, average: Callable[..., float]) -> float:
     return sum(
         law.mean(scene, shaft, average) for law in friction_laws_of(scene, shaft) if law.mean is not None
     )
+
+
+def largest_limit(scene: Any, shaft: int) -> float:
+    """Sum of the bounds of the limits of a shaft's laws, besides those of its torques [N m]."""
+    return sum(law.largest(scene, shaft) for law in friction_laws_of(scene, shaft) if law.largest is not None)

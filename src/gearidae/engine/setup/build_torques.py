@@ -8,7 +8,7 @@ import numpy as np
 
 from gearidae.engine.model.state import DRIVE, LOAD, SPEED, STOPS, Floats, Record
 from gearidae.engine.setup.tables import Tables
-from gearidae.laws.frictions import LAWS_OF_SHAFTS
+from gearidae.laws.frictions import LAWS_OF_SHAFTS, largest_limit
 from gearidae.laws.law import number_of
 from gearidae.laws.shaft.harmonic import common_period, pack_harmonics
 from gearidae.laws.shaft.own import largest_torque, law_knots
@@ -55,7 +55,8 @@ def reference_force(scene: GearScene, mass: float) -> float:
     if scene.drive.speed is not None:
         drive += _largest_held(scene, speed * ratio, ratio)
         speed = max([abs(speed), *(abs(value) / ratio for _, value in scene.drive.speed_knots())])
-    load = _largest(scene.load, speed, duration)
+    drive += largest_limit(scene, DRIVE)
+    load = _largest(scene.load, speed, duration) + largest_limit(scene, LOAD)
     force = max(
         drive / geometry.base_radius_pinion,
         (load + scene.load.drag * speed**2) / geometry.base_radius_gear,
