@@ -377,7 +377,7 @@ def test_it_looks_at_every_step_where_torques_shake_the_gears(amplitude, frequen
 
 
 def test_pairs_that_turn_round_between_two_looks():
-    """Steps and losses are the same wherever the balance looks, and the work of the radius nearly so."""
+    """Losses and the work of the radius are nearly the same wherever the balance looks, and differ alike."""
     scene = LOW.replace({"run.duration": 0.02, "coating.sam_fraction": 0.5, "contact.bodies": "rigid"})
     often, seldom = make_problem(scene), make_problem(scene)
     often.model.scene.quadrature_time = 0.0  # at every step and every root
@@ -385,7 +385,10 @@ def test_pairs_that_turn_round_between_two_looks():
         [block.balance for block in native_driver.run(problem, 1e-8, 2, Statistics())][-1]
         for problem in (often, seldom)
     ]
-    assert balances[0].adhesion_loss == balances[1].adhesion_loss
+    # the lag of a loss is followed from look to look: that makes 1.4e-7 of the loss here
+    assert balances[0].adhesion_loss == pytest.approx(balances[1].adhesion_loss, rel=1e-6, abs=0)
+    apart = [balance.radius_work - balance.adhesion_loss for balance in balances]
+    assert abs(apart[0] - apart[1]) < 1e-9 * balances[0].throughput
     # 3e-8 if a loss were recorded at the turning point, and taken from the power no sooner than the next look
     assert abs(balances[0].radius_work - balances[1].radius_work) < 1e-9 * balances[0].throughput
 
