@@ -8,7 +8,9 @@ import math
 import pytest
 from tests.reference.trains import chain, split
 
+import gearidae as gd
 from gearidae.cli import main
+from gearidae.cli.checking_train import train_columns
 from gearidae.scene import Scene, dump_case
 
 
@@ -38,6 +40,7 @@ def test_check_prints_each_mesh_and_hub(case, capfd):
         "load of the hub of idler 0.5296 uN at 110 deg friction takes 6.355e-13 N m",
         "natural frequencies 4.031e+05, 9.634e+05 Hz",
         "starting torque 8.0046985e-12 N m",
+        "steps, within a factor of about five",
         "second: thermal motion",
     ):
         assert expected in out
@@ -66,6 +69,13 @@ def test_check_warns_of_ages_of_nothing(case, capfd):
         assert f"{key} has no effect without hub_friction_rise of a shaft" in out
 
 
+def test_size_of_the_samples_is_that_of_the_dataset():
+    scene = Scene.from_dict(split())
+    ds = gd.simulate(scene, t_end=1e-6, samples=5)
+    sampled = [ds[name].size for name in ds.data_vars if "time" in ds[name].dims]
+    assert train_columns(scene) == sum(sampled) / ds.sizes["time"]
+
+
 def test_check_takes_keys_of_meshes(case, capfd):
     assert main(["check", case(split()), "--set", "meshes.two.offset=3 nm"]) == 0
     assert "load of output shared three 73.83 %, four 26.17 %" in words(capfd)
@@ -92,3 +102,17 @@ def test_a_coating_map_of_several_meshes_is_bad_input(case, capfd, tmp_path):
     assert main(["coating-map", case(chain()), "-o", str(tmp_path / "out.nc")]) == 2
     assert "meshes = (2 meshes): must be one here" in capfd.readouterr().err
     assert not (tmp_path / "out.nc").exists()
+
+
+def test_commands_take_a_stage_as_a_case_of_its_own(case, capfd, tmp_path):
+    """What a refusal says there is: the pair's case, of which a study runs."""
+    train = case(chain())
+    pull_off = ["pull-off", "--seeds", "3", "-o", str(tmp_path / "out.nc")]
+    assert main([*pull_off, train]) == 2
+    said = capfd.readouterr().err
+    assert "meshes = (2 meshes): must be one here" in said
+    assert "gearidae.dump_case(scene.pair(NAME))" in said
+    stage = gd.load_case(train).pair("second")
+    (tmp_path / "second.toml").write_text(gd.dump_case(stage))
+    assert gd.load_case(tmp_path / "second.toml") == stage
+    assert main([*pull_off, "--load", "1 uN", str(tmp_path / "second.toml")]) == 0

@@ -179,15 +179,11 @@ def read_keep(keep: Iterable[str] | str | None, scene: Scene) -> OutputSelection
 def _parts_of(scene: Scene) -> Mapping[str, tuple[str, ...]]:
     """Variables that a run of a scene leaves by itself, by their groups."""
     if is_long_train(scene):
-        from gearidae.archive.train.variables import (
-            OF_ASPERITIES,
-            PARTS,
-        )  # which makes datasets by this module
+        # which makes datasets by this module
+        from gearidae.archive.train.variables import PARTS, left_out
 
-        left_out = () if scene.contact.is_discrete else OF_ASPERITIES
-        return {
-            group: tuple(name for name in names if name not in left_out) for group, names in PARTS.items()
-        }
+        absent = left_out(scene)
+        return {group: tuple(name for name in names if name not in absent) for group, names in PARTS.items()}
     pairs_only = {"passages": tuple(PASSAGES)} if scene.roller is None else {}
     return {
         "extremes": (*extreme_names(scene), *([] if scene.roller is not None else [STANDSTILL_LIST.name])),

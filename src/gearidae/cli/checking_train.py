@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gearidae.archive.train.variables import TRAIN_SAMPLES, TWO_SHAFTS, left_out
 from gearidae.cli.checking import ageing_fact
 from gearidae.cli.fact import Fact, Facts
 from gearidae.mesh.pair_contact import pair_contact
@@ -51,6 +52,14 @@ def train_facts(scene: TrainScene) -> Facts:
     for first, second in overlapping(train):
         yield Fact("tip circles overlap", f"{first} and {second}", "they must lie in different planes")
     yield from _sides(scene)
+
+
+def train_columns(scene: TrainScene) -> int:
+    """Count the samples at one time that a dataset of a train keeps."""
+    sizes = {"shaft": len(scene.train.shafts), "mesh": len(scene.train.meshes), "time": 1}
+    absent = left_out(scene)
+    along = sum(sizes[v.dims[0]] for name, v in TRAIN_SAMPLES.items() if name not in absent)
+    return along + sum(source not in absent for source in TWO_SHAFTS.values())
 
 
 def _mesh(scene: TrainScene, mesh: TrainMesh, force: float) -> Facts:

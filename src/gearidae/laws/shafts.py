@@ -156,18 +156,6 @@ def _changing_along(
 
 
 @compiled
-def driving_along(
-    m: Model, shaft: int, t: float, angle: float, speed: float, acceleration: float
-) -> tuple[float, float]:
-    """`driving_force`, and its rate along the motion; where a law of a user jumps, both of the side before."""
-    if is_constant(m, shaft):
-        return m.scene.torque[shaft].constant, 0.0
-    then, angle, speed = last_on_its_side(m, shaft, t, angle, speed, acceleration)
-    rate = driving_rate(m, shaft, then, angle, speed, acceleration)
-    return driving_force(m, shaft, then, angle, speed) + (t - then) * rate, rate
-
-
-@compiled
 def is_steady(m: Model, shaft: int, t: float) -> bool:
     """Whether the torque of a shaft that does not turn stays as it is until a schedule enters its next segment."""
     return bool(_steady(m, shaft, t, True))

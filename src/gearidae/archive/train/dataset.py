@@ -20,13 +20,12 @@ from gearidae.archive.train.variables import (
     ENERGY,
     EVENT_PLACES,
     MESH_TOTALS,
-    OF_AGEING,
-    OF_ASPERITIES,
     OF_JUDGED,
     REST_LIST,
     SHAFT_TOTALS,
     TRAIN_SAMPLES,
     TWO_SHAFTS,
+    left_out,
 )
 from gearidae.archive.train.work import efficiencies
 from gearidae.archive.variables import (
@@ -42,7 +41,6 @@ from gearidae.archive.variables import (
 )
 from gearidae.populations.flanks import flanks_digest, flanks_of
 from gearidae.records import Extremes, Words
-from gearidae.scene.joints import ages
 from gearidae.scene.judged import judged_mesh, judged_shaft
 
 if TYPE_CHECKING:
@@ -79,9 +77,8 @@ def train_dataset(
         and extremes of the judged shaft without a dimension; events with their mesh and shaft. Everything in SI units.
     """
     extremes = solution.extremes or Extremes()
-    sampled = [name for name in TRAIN_SAMPLES if name in solution.samples]
-    if not ages(scene):
-        sampled = [name for name in sampled if name not in OF_AGEING]
+    absent = left_out(scene)
+    sampled = [name for name in TRAIN_SAMPLES if name in solution.samples and name not in absent]
     variables: dict[Hashable, Any] = {
         name: (TRAIN_SAMPLES[name].dims, solution.samples[name], TRAIN_SAMPLES[name].attributes)
         for name in sampled
@@ -103,12 +100,11 @@ def train_dataset(
     variables[STANDSTILL_LIST.name] = ((), standstills_as_text(extremes), STANDSTILL_LIST.attributes)
     variables[REST_LIST.name] = ((), _rests(solution), REST_LIST.attributes)
     variables["reached"] = ((), solution.reached, OF_SWEPT_RUN["reached"].attributes)
-    left_out = () if scene.contact.is_discrete else OF_ASPERITIES
     return xr.Dataset(
         {
             name: entry
             for name, entry in variables.items()
-            if name not in left_out and selection.holds(str(name))
+            if name not in absent and selection.holds(str(name))
         },
         coords={
             "time": ("time", solution.time, TIME.attributes),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -17,6 +17,10 @@ from gearidae.archive.variables import (
     Variable,
 )
 from gearidae.records.train_results import WORKS_OF_MESHES, WORKS_OF_SHAFTS
+from gearidae.scene.joints import ages
+
+if TYPE_CHECKING:
+    from gearidae.scene import Scene
 
 SHAFT, MESH = ("shaft",), ("mesh",)
 
@@ -161,6 +165,15 @@ ENERGY: Final[Mapping[str, Variable]] = {
 }
 OF_ASPERITIES: Final = ("asperities_in_contact", *ASPERITY_COUNTS, *POPULATION_EVENTS)
 """What a run has only where its asperities are followed one by one."""
+
+
+def left_out(scene: Scene) -> frozenset[str]:
+    """Names of what a run of a train does not leave, as its scene has nothing of the kind."""
+    return frozenset(
+        {*(() if ages(scene) else OF_AGEING), *(() if scene.contact.is_discrete else OF_ASPERITIES)}
+    )
+
+
 EVENT_PLACES: Final[Mapping[str, Variable]] = {
     name: Variable(name, ("event",), "1", meaning, np.int64, comment="-1 where it belongs to none")
     for name, meaning in (
