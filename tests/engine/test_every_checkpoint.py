@@ -9,7 +9,7 @@ from gearidae.engine.backend import run_blocks
 from gearidae.engine.setup.build import make_problem
 from gearidae.records import Statistics
 
-LOW = gd.preset("teodorescu2009_low_speed").replace({"coating.sam_fraction": 0.5, "run.duration": 2e-3})
+LOW = gd.preset("teodorescu2009_low_speed").replace({"coating.sam_fraction": 0.5, "run.duration": 1e-3})
 HIGH = gd.preset("teodorescu2009").replace({"coating.sam_fraction": 0.3, "run.duration": 1e-5})
 SCENES = {
     "vibrating": LOW.replace({"initial.gap": 5.2 * 6e-9}),
