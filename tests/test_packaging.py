@@ -95,7 +95,9 @@ def test_what_the_report_needs_is_in_the_package():
         ("gearidae.report", "explorer.js"),
         ("gearidae.report", "map.js"),
         ("gearidae.report", "mesh.js"),
+        ("gearidae.report", "pair.js"),
         ("gearidae.report", "player.js"),
+        ("gearidae.report", "train.js"),
     ):
         assert (files(package) / name).is_file()
 

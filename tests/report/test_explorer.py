@@ -210,6 +210,9 @@ def test_command(tmp_path, monkeypatch, capsys):
     assert data["dims"] == []
     assert (data["start"], data["end"]) == pytest.approx((1e-3, 2e-3), rel=1e-12)
     assert len(frames_of(data, 0)) == 101
+    assert main(["explore", "two.nc"]) == 0  # in place of its own page
+    assert main(["explore", "two.nc", "-o", "part.html"]) == 2
+    (tmp_path / "two_explore.html").write_text("notes")
     assert main(["explore", "two.nc"]) == 2
     assert main(["explore", "two.nc", "--select", "backlash=1", "-o", "no.html"]) == 2
 

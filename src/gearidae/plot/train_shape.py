@@ -22,7 +22,7 @@ _MARK = 2.0
 
 @dataclass(frozen=True, slots=True)
 class PlacedGear:
-    """A gear of a train in the frame of the train, as it stands at the start; lengths in m.
+    """A gear of a train in the frame of the train, as it stands unturned; lengths in m.
 
     Attributes
     ----------
@@ -34,7 +34,8 @@ class PlacedGear:
     centre : ndarray, shape (2,)
         Of its shaft.
     points : ndarray, shape (n, 2)
-        Outline about the centre, tooth 0 first.
+        Outline about the centre, tooth 0 first, all teeth alike.
+    teeth : int
     mark : ndarray, shape (2,)
         Foot of tooth 0.
     pitch_radius, tip_radius : float
@@ -47,6 +48,7 @@ class PlacedGear:
     plane: int
     centre: Floats
     points: Floats
+    teeth: int
     mark: Floats
     pitch_radius: float
     tip_radius: float
@@ -72,7 +74,7 @@ def train_gears(train: Train, errors: Floats) -> tuple[PlacedGear, ...]:
     ----------
     train : Train
     errors : ndarray, shape (meshes,)
-        Transmission errors at the start [m].
+        Transmission errors with all shafts unturned [m].
 
     Returns
     -------
@@ -86,6 +88,28 @@ def train_gears(train: Train, errors: Floats) -> tuple[PlacedGear, ...]:
             if name not in placed:
                 placed[name] = _placed(train, mesh, float(error), planes[name], driven=driven)
     return tuple(sorted(placed.values(), key=lambda gear: gear.plane))
+
+
+def errors_before_turning(train: Train, angles: Floats, errors: Floats) -> Floats:
+    """Transmission errors that a train has with all its shafts unturned, as its outlines need them.
+
+    Parameters
+    ----------
+    angles : ndarray, shape (shafts,)
+        At any time [rad].
+    errors : ndarray, shape (meshes,)
+        Transmission errors at that time [m].
+
+    Returns
+    -------
+    ndarray, shape (meshes,)
+        [m].
+    """
+    unturned: Floats = errors - [
+        mesh.geometry.base_radius_pinion * angles[mesh.a] - mesh.geometry.base_radius_gear * angles[mesh.b]
+        for mesh in train.meshes
+    ]
+    return unturned
 
 
 def pitch_point(train: Train, mesh: TrainMesh) -> Floats:
@@ -115,6 +139,7 @@ def _placed(train: Train, mesh: TrainMesh, error: float, plane: int, *, driven: 
         plane=plane,
         centre=np.array(train.shafts[shaft].centre),
         points=points,
+        teeth=wheel.teeth,
         mark=tip * (1.0 - _MARK * geometry.module / wheel.tip_radius),
         pitch_radius=abs(wheel.centre),
         tip_radius=wheel.tip_radius,

@@ -22,16 +22,17 @@ from gearidae.drawing.picture import new_picture
 from gearidae.drawing.style import NEGATIVE, POSITIVE, quantity_text
 from gearidae.errors import SceneError
 from gearidae.plot.speed_strip import speed_strip
-from gearidae.plot.train_shape import PlacedGear, pitch_point, train_gears
+from gearidae.plot.train_shape import PlacedGear, errors_before_turning, pitch_point, train_gears
 from gearidae.scene.scene import is_long_train
 
 SHAFT_COLOURS: Final = ("#d3e5f3", "#f1d9a8", "#cfe8d8", "#ead6e4", "#dddddd", "#f6d9cc")
 """Of the gears of each shaft, again from the first where there are more."""
 _SAMPLES = ("shaft_angle", "shaft_speed", "hub_load", "hub_load_angle", "mesh_force", "transmission_error")
 _WIDTH, _STRIP, _LEGEND, _TITLE = 7.6, 1.15, 0.3, 0.35  # inches
-_LONGEST, _SHORTEST = 0.17, 0.12
+LONGEST, SHORTEST = 0.17, 0.12
 """Longest arrow over the diagonal of the picture, and shortest over the longest: it shows where a small load points."""
-_NO_ARROW = 1e-3  # of the largest load: less has no arrow
+NO_ARROW = 1e-3
+"""Share of the largest load below which a load has no arrow."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,6 +143,17 @@ def train_states(run: xr.Dataset, times: ArrayLike) -> list[TrainState]:
     return [TrainState(float(recorded[k]), *row) for k, *row in zip(nearest, *columns, strict=True)]
 
 
+def placed_gears(run: xr.Dataset) -> tuple[PlacedGear, ...]:
+    """Lay out the gears of a run, from `train_run`, unturned."""
+    scene = run_scene(run)
+    assert is_long_train(scene)
+    first = run[["shaft_angle", "transmission_error"]].isel(time=0).load()
+    errors = errors_before_turning(
+        scene.train, first["shaft_angle"].values, first["transmission_error"].values
+    )
+    return train_gears(scene.train, errors)
+
+
 class TrainView:
     """A figure in which a train can be drawn time after time.
 
@@ -162,9 +174,9 @@ class TrainView:
         assert is_long_train(scene)
         self._train = scene.train
         self._judged = [shaft.name for shaft in scene.train.shafts].index(run.attrs["judged_shaft"])
-        self._gears = train_gears(scene.train, run["transmission_error"].isel(time=0).values)
+        self._gears = placed_gears(run)
         self._largest = max(float(state.load.max()) for state in states)
-        self._longest = _LONGEST * math.hypot(*np.ptp(self._corners([]), axis=0))
+        self._longest = LONGEST * math.hypot(*np.ptp(self._corners([]), axis=0))
         low, high = self._corners(states)
         across, up = high - low
         height = min(max(_WIDTH * up / across, 1.8), 8.0)
@@ -214,9 +226,9 @@ class TrainView:
     def _arrow(self, number: int, state: TrainState) -> Floats:
         """Arrow of a hub's load [um]; short ones are drawn longer, so that they show where the load points."""
         load, angle = float(state.load[number]), float(state.load_angle[number])
-        if not load > _NO_ARROW * self._largest:
+        if not load > NO_ARROW * self._largest:
             return np.zeros(2)
-        length = self._longest * max(load / self._largest, _SHORTEST)
+        length = self._longest * max(load / self._largest, SHORTEST)
         return length * np.array([math.cos(angle), math.sin(angle)])
 
     def _wheel(self, gear: PlacedGear) -> tuple[Polygon, Line2D]:

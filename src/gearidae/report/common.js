@@ -129,10 +129,20 @@ const gearidae = (() => {
     return y;
   }
 
+  // Name of a line of a plot behind a patch of its colour, which follows the colours of the page.
+  function keyOf(parent, words, run) {
+    const key = element("span", parent, "", { className: "key-of" }), patch = element("span", key, "", { className: "patch" });
+    const paint = () => { patch.style.background = colour(run); };
+    key.append(words);
+    paint();
+    dark.addEventListener("change", paint);
+    return key;
+  }
+
   const slug = (text) => text.toLowerCase().replace(/[^a-z0-9]+/g, "_").replace(/^_+|_+$/g, "") || "report";
 
   return {
     slug, decode, element, prefixOf, readable, style, colour, seconds, quantity, soon, whenSeenAnew, penOf, withMargin, timesAcross,
-    valuesUp,
+    valuesUp, keyOf,
   };
 })();

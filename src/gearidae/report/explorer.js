@@ -1,8 +1,7 @@
-// Runs to look through: sliders over what was swept and over time, turning gears, the force on the gear, speed and torque.
+// Runs to look through: sliders over what was swept and over time, curves, and the gears that pair.js or train.js draws.
 (() => {
   "use strict";
-  const { decode, element, prefixOf, readable, style, colour, seconds, quantity, soon, whenSeenAnew, penOf, withMargin, timesAcross, valuesUp } = gearidae;
-  const { COAST, onLine, turned, drawNear, drawForce } = gearidae.mesh;
+  const { decode, element, prefixOf, readable, style, colour, seconds, soon, whenSeenAnew, penOf, withMargin, timesAcross, valuesUp } = gearidae;
   const holder = document.getElementById("explorer"), source = document.getElementById("explorer-data");
   if (!holder || !source) return;
   const data = JSON.parse(source.textContent);
@@ -24,85 +23,13 @@
   // The picture in view, or the last one of a run that ended before; null of a run that has none.
   function now() {
     if (!run.rows) return null;
-    const start = WIDE * Math.min(frame, run.rows - 1), found = {};
-    data.columns.forEach((name, k) => { found[name] = run.numbers[start + k]; });
-    return found;
+    const start = WIDE * Math.min(frame, run.rows - 1);
+    return view.stateOf(run.numbers.subarray(start, start + WIDE));
   }
 
   // A picture is one of so many samples, and the last sample need not be one.
   const timeOf = (number) => data.start + (data.end - data.start) * number * data.every / Math.max(1, data.samples - 1);
   const pictureAt = (share) => Math.round(Math.min(1, Math.max(0, share)) * (data.samples - 1) / data.every);
-
-  // Pairs on the path of contact of a flank, by their places [m]: the coast flank mirrors the other, half a pitch later.
-  function pairPlaces(gears, flank, travel) {
-    const phase = flank === COAST ? 2 * gears.approach / gears.pitch + 0.5 - travel : travel, found = [];
-    for (let place = gears.pitch * (phase - Math.floor(phase)); place <= gears.path; place += gears.pitch) found.push(place);
-    return found;
-  }
-
-  function drawMesh(state, gears) {
-    const flank = state.coast_gap < state.drive_gap ? COAST : 0;
-    const motion = { travel: state.travel * gears.pitch, error: state.transmission_error, speed: state.gear_speed };
-    const near = drawNear(mesh, gears, motion, flank);
-    if (!near) return;
-    const { pen, at } = near, push = flank === COAST ? -state.mesh_force : state.mesh_force; // positive pushes the teeth apart
-    drawForce(near, gears, flank, gears.approach, push, data.largest);
-    for (const place of pairPlaces(gears, flank, state.travel)) {
-      pen.beginPath();
-      pen.arc(...at(onLine(gears, flank, place)), 5, 0, 2 * Math.PI);
-      pen.fillStyle = state.pairs_in_contact > 0 ? colour(push < 0 ? 1 : 0) : style("--ground");
-      pen.strokeStyle = style("--ink");
-      pen.lineWidth = 1.5;
-      pen.fill();
-      pen.stroke();
-    }
-  }
-
-  // Path of a whole wheel about its centre, in modules; made once.
-  function wholeOf(wheel) {
-    if (wheel.whole) return wheel.whole;
-    wheel.whole = new Path2D();
-    wheel.reach = 0;
-    for (let k = 0; k < wheel.teeth; k++) {
-      const angle = -2 * Math.PI * k / wheel.teeth, c = Math.cos(angle), s = Math.sin(angle);
-      for (let i = 0; i < wheel.tooth.length; i += 8) { // every fourth point: a tooth is a few pixels
-        const a = wheel.tooth[i], b = wheel.tooth[i + 1];
-        wheel.whole.lineTo(c * a - s * b, s * a + c * b);
-        wheel.reach = Math.max(wheel.reach, Math.hypot(a, b));
-      }
-    }
-    wheel.whole.closePath();
-    return wheel.whole;
-  }
-
-  // Both gears as a whole, the pinion to the left; a dot stands on tooth 0.
-  function drawWhole(state, gears) {
-    const sheet = penOf(whole);
-    if (!sheet) return;
-    const { pen, width, height } = sheet, wheels = [gears.pinion, gears.gear];
-    wheels.forEach(wholeOf);
-    const long = wheels.reduce((sum, wheel) => sum + wheel.reach + Math.abs(wheel.centre), 1), tall = 2 * Math.max(...wheels.map((wheel) => wheel.reach)) + 1;
-    const size = Math.min(width / long, height / tall);
-    const pitchPoint = (width - size * long) / 2 + size * (gears.pinion.centre + gears.pinion.reach + 0.5);
-    const angles = turned(gears, state.travel * gears.pitch, state.transmission_error, 0);
-    wheels.forEach((wheel, k) => {
-      pen.save();
-      pen.translate(pitchPoint, height / 2);
-      pen.scale(size, -size);
-      pen.rotate(Math.PI / 2);
-      pen.translate(0, wheel.centre);
-      pen.rotate(wheel.turning * angles[k]);
-      pen.fillStyle = style(k ? "--gear" : "--pinion");
-      pen.strokeStyle = style("--ink");
-      pen.lineWidth = 0.8 / size;
-      pen.fill(wheel.whole);
-      pen.stroke(wheel.whole);
-      pen.fillStyle = style("--ink");
-      pen.beginPath(); pen.arc(0, 0, 3 / size, 0, 2 * Math.PI); pen.fill();
-      pen.beginPath(); pen.arc(0, -Math.sign(wheel.centre) * (wheel.reach - 4), Math.max(3 / size, 0.6), 0, 2 * Math.PI); pen.fill();
-      pen.restore();
-    });
-  }
 
   function drawCurve(plot, k) {
     const sheet = penOf(plot.canvas);
@@ -112,12 +39,14 @@
     const scale = plot.unit === "rad s-1" ? { factor: 1, prefix: "" } : prefixOf(Math.max(...range.map(Math.abs)));
     plot.title.textContent = plot.label + " (" + readable(scale.prefix, plot.unit) + ")";
     const x = timesAcross(pen, box, [data.start, data.start + span]), y = valuesUp(pen, box, range, scale.factor, 28);
-    const values = run.lines[k];
-    pen.strokeStyle = colour(0);
-    pen.lineWidth = 1.4;
-    pen.beginPath();
-    values.forEach((value, i) => { if (!Number.isNaN(value)) pen.lineTo(x(data.start + span * i / (values.length - 1 || 1)), y(value)); });
-    pen.stroke();
+    pen.lineWidth = plot.names.length > 1 ? 1 : 1.4;
+    plot.names.forEach((_, line) => {
+      const values = run.lines[plot.first + line];
+      pen.strokeStyle = colour(line);
+      pen.beginPath();
+      values.forEach((value, i) => { if (!Number.isNaN(value)) pen.lineTo(x(data.start + span * i / (values.length - 1 || 1)), y(value)); });
+      pen.stroke();
+    });
     const here = x(timeOf(frame));
     pen.strokeStyle = style("--ink");
     pen.lineWidth = 1;
@@ -129,16 +58,12 @@
     const words = ["t = " + seconds(time)];
     if (!state) return words.concat("the run has no samples").join("  ·  ");
     if (ended) words.push("the run ended at " + seconds(timeOf(run.rows - 1)));
-    words.push("gear " + state.gear_speed.toPrecision(4) + " rad/s", "torque of the contacts " + quantity(state.gear_contact_torque, "N m"),
-      "force of all pairs " + quantity(state.mesh_force, "N"), "gap " + quantity(state.drive_gap, "m", 3) + " (drive), " + quantity(state.coast_gap, "m", 3) + " (coast)",
-      state.pairs_in_contact + (state.pairs_in_contact === 1 ? " pair" : " pairs") + " in contact");
-    return words.join("  ·  ");
+    return words.concat(view.wordsOf(state)).join("  ·  ");
   }
 
   function draw() {
-    const state = now(), gears = data.gears[run.gears];
-    for (const canvas of [mesh, whole]) canvas.hidden = !state;
-    if (state) { drawMesh(state, gears); drawWhole(state, gears); }
+    const state = now();
+    view.draw(state, data.gears[run.gears]);
     plots.forEach(drawCurve);
     slider.value = frame;
     slider.setAttribute("aria-valuetext", seconds(timeOf(frame)));
@@ -195,10 +120,13 @@
     canvas.setAttribute("aria-label", words);
     return canvas;
   };
-  const mesh = figureOf("both gears near the pitch point", "near", left);
-  element("figcaption", mesh.parentElement, "Teeth to scale, gaps between them × " + data.gaps + ". Arrow: force of all pairs on the gear; blue pushes, orange pulls.");
-  const plots = [["Speed of the gear", "rad s-1"], ["Torque of the tooth contacts on the gear", "N m"]].map(([label, unit]) => {
-    const canvas = figureOf(label + " over time", "curve", right), title = element("figcaption", canvas.parentElement);
+  const view = gearidae.explored(data, (words, name) => figureOf(words, name, left), left, () => later());
+  let lines = 0;
+  const plots = view.plots.map(({ label, unit, names }) => {
+    const canvas = figureOf(label + " over time", "curve", right), caption = element("figcaption", canvas.parentElement), title = element("span", caption);
+    const first = lines;
+    lines += names.length;
+    if (names.length > 1) names.forEach((name, k) => gearidae.keyOf(caption, name, k));
     const pointed = (event) => {
       const box = canvas.getBoundingClientRect(), share = (event.clientX - box.left - LEFT) / (box.width - LEFT - RIGHT);
       stop();
@@ -206,10 +134,8 @@
     };
     canvas.addEventListener("pointerdown", (event) => { canvas.setPointerCapture(event.pointerId); pointed(event); });
     canvas.addEventListener("pointermove", (event) => { if (event.buttons) pointed(event); });
-    return { canvas, title, label, unit };
+    return { canvas, title, label, unit, names, first };
   });
-  const whole = figureOf("both gears as a whole", "whole", left);
-  element("figcaption", whole.parentElement, "Whole gears; a dot marks one tooth of each.");
   const notes = ["The curves have the same axes for all runs."];
   if (data.every > 1) notes.unshift("One of every " + data.every + " samples is a picture; the curves hold the smallest and largest values between.");
   element("p", holder, notes.join(" "), { className: "hint" });

@@ -11,18 +11,27 @@ import numpy as np
 import xarray as xr
 
 from gearidae.analysis.verdict.headline import headline
-from gearidae.archive.pieces import pieces
-from gearidae.archive.select import first_travel, is_roller, motion_samples, refuse_train, run_scene, runs
+from gearidae.archive.select import (
+    first_travel,
+    is_roller,
+    is_train,
+    motion_samples,
+    refuse_train,
+    run_scene,
+    runs,
+)
 from gearidae.archive.target import whole_file
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.report import html
 from gearidae.report.frame import page
+from gearidae.report.frames import ShownRun, largest_of, pack_frames, picked, range_of, thinning
 from gearidae.report.gears import pack_gears
-from gearidae.report.outcomes import ascending, pack_outcomes
-from gearidae.report.series import block, reduced
+from gearidae.report.outcomes import ascending
+from gearidae.report.series import reduced
 from gearidae.report.tables import outcome_table
 from gearidae.report.teeth import pack_teeth
+from gearidae.report.trains import pack_trains
 from gearidae.scene import GearScene, require_gears
 
 MOST_VALUES = 400_000
@@ -39,7 +48,6 @@ FRAME = (
 )
 """Numbers of a picture: travel of the gear in pitches, and samples [SI]."""
 _CURVES = ("gear_speed", "gear_contact_torque")
-_MOST_FRAMES = 6000
 _CLEARANCE = 0.4
 """Modules of backlash that are drawn at most: the pinion's teeth keep a land at their tips."""
 
@@ -52,15 +60,15 @@ def explore(
     Parameters
     ----------
     ds : xarray.Dataset
-        A single run of gears or a sweep, with samples. Of a part of the time, ``ds.sel(time=slice(0.1, 0.2))``, the
-        page holds more pictures a second.
+        A single run of gears, a pair or a train, or a sweep, with samples. Of a part of the time,
+        ``ds.sel(time=slice(0.1, 0.2))``, the page holds more pictures a second.
     path : path-like
         HTML file to write; it loads nothing from the network.
     overwrite : bool, optional
         Whether a file that is there may be replaced.
     teeth : bool, optional
         Whether to add the force and contact state of each pair of teeth with their asperities, for which seven runs at
-        most run again.
+        most run again; there are none of trains of several meshes.
 
     Returns
     -------
@@ -76,7 +84,8 @@ def explore(
     Notes
     -----
     Gears are drawn to scale from the scene's involutes and the recorded motion; the gaps between their teeth are
-    drawn larger, by a factor that the page states. The arrow is the recorded force of all pairs on the gear.
+    drawn larger, by a factor that the page states. The arrow is the recorded force of all pairs on the gear. Of a train
+    the page shows all gears about their centres, gaps to scale too, with an arrow for the load of each hub.
     """
     with whole_file(path, overwrite=overwrite, name="explore") as part:
         part.write_text(build_explorer(ds, teeth=teeth), encoding="utf-8")
@@ -91,13 +100,16 @@ def build_explorer(ds: xr.Dataset, *, most_values: int = MOST_VALUES, teeth: boo
     most_values : int, optional
         Numbers to embed at most, without those of `teeth`.
     """
+    if teeth:
+        refuse_train(ds)
     data = pack_explorer(ds, most_values)
     viewer = '<div id="explorer"></div>\n<noscript><p>The page needs JavaScript.</p></noscript>\n'
     sections = [
         html.section("explore", "Gears and runs", viewer + html.json_block("explorer-data", data)),
         html.section("outcome", "Outcome", html.folded("Outcome of each run", outcome_table(ds))),
     ]
-    scripts = ["common.js", "player.js", "mesh.js", "map.js", "explorer.js"]
+    view = "train.js" if is_train(ds) else "pair.js"
+    scripts = ["common.js", "player.js", "mesh.js", "map.js", view, "explorer.js"]
     if teeth:
         player = '<div id="teeth-viewer"></div>\n' + html.json_block("teeth-data", pack_teeth(ds))
         sections.insert(1, html.section("teeth", "Teeth in mesh", player))
@@ -118,23 +130,21 @@ def pack_explorer(ds: xr.Dataset, most_values: int = MOST_VALUES) -> dict[str, A
     Returns
     -------
     dict
-        What `gearidae.report.outcomes.pack_outcomes` packs, and ``columns`` (`FRAME`), ``every`` (samples a picture),
-        ``gaps`` (how many times their size they are drawn), ``start`` and ``end`` [s], numbers of ``samples`` and
-        ``frames``, ``gears`` (from `gearidae.report.gears.pack_gears`, each once), ``largest`` force [N], ``ranges`` of
-        the curves, and ``runs``: which gears, ``frames`` and ``curves`` as text from `gearidae.report.html.numbers`.
+        What `gearidae.report.frames.pack_frames` packs, with `FRAME` as ``columns`` and ``gears`` from
+        `gearidae.report.gears.pack_gears`, each once; ``gaps`` (how many times their size they are drawn), ``largest``
+        force [N] and ``ranges`` of the curves. Of trains what `gearidae.report.trains.pack_trains` packs.
 
     Raises
     ------
     SceneError
         If the dataset is not of gears or has no samples.
     """
+    if is_train(ds):
+        return pack_trains(ds, most_values)
     samples = _samples(ds)
     ds = ascending(ds).isel(time=slice(samples))
     packed = [(require_gears(run_scene(run)), run) for _, run in runs(ds)]
-    # a third of the numbers to the curves, of which an interval has four, two thirds to the pictures
-    share = max(2, min(_MOST_FRAMES, most_values // (12 * len(packed))))
-    every = max(1, math.ceil((samples - 1) / (share - 1)))
-    size = block(samples, 2 * share)
+    every, size = thinning(samples, len(packed), len(FRAME), len(_CURVES), most_values)
     gaps = min(_factor(scene) for scene, _ in packed)
     gears: list[dict[str, Any]] = []
     shown = []
@@ -142,29 +152,13 @@ def pack_explorer(ds: xr.Dataset, most_values: int = MOST_VALUES) -> dict[str, A
         drawn = pack_gears(scene, gaps=gaps)
         if drawn not in gears:
             gears.append(drawn)
-        frames = _frames(scene, run, every)
         curves = [reduced(run[name], size) for name in _CURVES]
-        shown.append((gears.index(drawn), frames, curves))
+        shown.append(ShownRun(gears.index(drawn), _frames(scene, run, every), curves))
     return {
-        **pack_outcomes(ds),
-        "columns": FRAME,
-        "every": every,
+        **pack_frames(ds, FRAME, every, gears, shown),
         "gaps": gaps,
-        "start": float(ds["time"][0]),
-        "end": float(ds["time"][-1]),
-        "samples": samples,
-        "frames": math.ceil(samples / every),
-        "gears": gears,
-        "largest": max(_largest(frames[:, FRAME.index("mesh_force")]) for _, frames, _ in shown),
-        "ranges": [_range([curves[k] for *_, curves in shown]) for k in range(len(_CURVES))],
-        "runs": [
-            {
-                "gears": number,
-                "frames": html.numbers(frames),
-                "curves": [html.numbers(curve) for curve in curves],
-            }
-            for number, frames, curves in shown
-        ],
+        "largest": max(largest_of(run.frames[:, FRAME.index("mesh_force")]) for run in shown),
+        "ranges": [range_of([run.curves[k] for run in shown]) for k in range(len(_CURVES))],
     }
 
 
@@ -174,7 +168,6 @@ def _samples(ds: xr.Dataset) -> int:
         raise SceneError(
             "explore", "a roller", "needs gears; gearidae report shows the force and gap of a roller"
         )
-    refuse_train(ds)
     missing = [name for name in ("gear_angle", *FRAME[1:]) if name not in ds.variables]
     if missing:
         raise SceneError("explore", missing[0], "the dataset has no samples of it")
@@ -193,25 +186,8 @@ def _factor(scene: GearScene) -> float:
 def _frames(scene: GearScene, run: xr.Dataset, every: int) -> Floats:
     """One of so many samples, as far as the run has come, shape (n, columns)."""
     count = motion_samples(run)
-    angle, *columns = (_picked(run[name], every, count) for name in ("gear_angle", *FRAME[1:]))
+    angle, *columns = (picked(run[name], every, count) for name in ("gear_angle", *FRAME[1:]))
     geometry = scene.geometry
     travel = (angle * geometry.base_radius_gear + first_travel(run, scene)) / geometry.base_pitch
     # as many pitches as bring both gears back to where they were: float32 keeps the position of millions of pitches
     return np.stack([travel % math.lcm(geometry.pinion_teeth, geometry.gear_teeth), *columns], axis=1)
-
-
-def _picked(values: xr.DataArray, every: int, count: int) -> Floats:
-    """One of so many of the first values, read piece by piece."""
-    parts = [part[-first % every :: every] for first, part in pieces(values, 0, count)]
-    return np.concatenate([np.empty(0), *parts])
-
-
-def _largest(values: Floats) -> float:
-    return float(np.max(np.abs(values), initial=0.0, where=np.isfinite(values)))
-
-
-def _range(curves: list[Floats]) -> list[float]:
-    """Smallest and largest value of some curves."""
-    values = np.concatenate(curves)
-    values = values[np.isfinite(values)]
-    return [float(values.min()), float(values.max())] if values.size else [0.0, 0.0]

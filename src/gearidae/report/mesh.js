@@ -102,5 +102,23 @@
     pen.fill();
   }
 
-  gearidae.mesh = { COAST, onLine, turned, drawNear, drawForce };
+  // Path of a whole wheel about its centre, of one of so many points of its teeth, clockwise unless it says another step; made once.
+  function wholeOf(wheel, every = 4) { // every fourth point: a tooth is a few pixels
+    const known = wheel.whole || (wheel.whole = {});
+    if (known[every]) return known[every];
+    const path = known[every] = new Path2D(), step = wheel.step || -2 * Math.PI / wheel.teeth;
+    wheel.reach = 0;
+    for (let k = 0; k < wheel.teeth; k++) {
+      const angle = step * k, c = Math.cos(angle), s = Math.sin(angle);
+      for (let i = 0; i < wheel.tooth.length; i += 2 * every) {
+        const a = wheel.tooth[i], b = wheel.tooth[i + 1];
+        path.lineTo(c * a - s * b, s * a + c * b);
+        wheel.reach = Math.max(wheel.reach, Math.hypot(a, b));
+      }
+    }
+    path.closePath();
+    return path;
+  }
+
+  gearidae.mesh = { COAST, onLine, turned, drawNear, drawForce, arrow, wholeOf };
 })();
