@@ -154,6 +154,6 @@ def test_the_command_draws_a_train(three, tmp_path, monkeypatch, capfd):
     plot = ["plot", "run.nc", "--picture", "train"]
     assert main([*plot, "--time", "50 us"]) == 0
     assert main([*plot, "--from", "10 us", "--to", "20 us", "--frames", "2", "--dpi", "40"]) == 0
-    assert capfd.readouterr().out == "Picture: run.png\nPicture: run.gif\n"
+    assert capfd.readouterr().out == "Picture: run_train.png\nPicture: run_train.gif\n"
     assert main(["plot", "run.nc", "--time", "50 us"]) == 2
     assert "needs --picture teeth or --picture train" in capfd.readouterr().err
