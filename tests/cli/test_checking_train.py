@@ -8,7 +8,9 @@ import math
 import pytest
 from tests.reference.trains import chain, split
 
+import gearidae as gd
 from gearidae.cli import main
+from gearidae.cli.checking_train import train_columns
 from gearidae.scene import Scene, dump_case
 
 
@@ -38,6 +40,7 @@ def test_check_prints_each_mesh_and_hub(case, capfd):
         "load of the hub of idler 0.5296 uN at 110 deg friction takes 6.355e-13 N m",
         "natural frequencies 4.031e+05, 9.634e+05 Hz",
         "starting torque 8.0046985e-12 N m",
+        "steps, within a factor of about five",
         "second: thermal motion",
     ):
         assert expected in out
@@ -64,6 +67,13 @@ def test_check_warns_of_ages_of_nothing(case, capfd):
     out = words(capfd)
     for key in ("initial.rest_time = 1 s", "shafts.idler.hub_ageing_time = 1 ms"):
         assert f"{key} has no effect without hub_friction_rise of a shaft" in out
+
+
+def test_size_of_the_samples_is_that_of_the_dataset():
+    scene = Scene.from_dict(split())
+    ds = gd.simulate(scene, t_end=1e-6, samples=5)
+    sampled = [ds[name].size for name in ds.data_vars if "time" in ds[name].dims]
+    assert train_columns(scene) == sum(sampled) / ds.sizes["time"]
 
 
 def test_check_takes_keys_of_meshes(case, capfd):

@@ -7,19 +7,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.reference.trains import chain, compound, split
 
 import gearidae as gd
 from gearidae.mesh.pair_contact import pair_contact
 from gearidae.progress import in_words
 from gearidae.runs.estimates import mean_drive_torque
 from gearidae.runs.run_time import run_time, time_in_words
+from gearidae.scene import Scene
 
-# run times of trains are not estimated
-CASES = [
-    path
-    for path in sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
-    if path.stem != "transmission"
-]
+CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
 LOW = gd.preset("teodorescu2009_low_speed")
 
 
@@ -35,11 +32,15 @@ SETTLING = {"inspection"}
         for path in CASES
     ],
 )
-def test_steps_of_the_shipped_cases_within_a_factor_of_three(case):
+def test_steps_of_the_shipped_cases_within_the_factor_that_is_given(case):
     scene = gd.load_case(case)
-    ratio = run_time(scene).steps / int(gd.simulate(scene).steps)
-    assert ratio > 1.0 / 3.0
-    assert ratio < 3.0 or case.stem in SETTLING
+    expected = run_time(scene)
+    ratio, within = (
+        expected.steps / int(gd.simulate(scene).steps),
+        {"three": 3.0, "five": 5.0}[expected.within],
+    )
+    assert ratio > 1.0 / within
+    assert ratio < within or case.stem in SETTLING
 
 
 @pytest.mark.parametrize("fraction", [0.8, 0.5])
@@ -148,3 +149,53 @@ def test_times_of_many_runs_count_the_cores():
     assert time_in_words(scenes, 3, None) == f"some {in_words(alone)}, within a factor of about three"
     assert time_in_words(scenes, 30, 4).startswith(f"some {in_words(10.0 * alone / 4.0)} with 4 at a time")
     assert time_in_words([LOW], 1, 8) == "less than a second"
+
+
+def drawn_train(number):
+    """A chain, a split path or a compound reduction that runs for 2 ms."""
+    rng = np.random.default_rng([77, number])
+    scene = Scene.from_dict((chain, split, compound)[number % 3]())
+    roughness = rng.uniform(4e-9, 9e-9)
+    return scene.replace(
+        {
+            "coating.sam_fraction": rng.uniform(0.3, 1.0),
+            "surface.roughness": roughness,
+            "initial.gap": 6.0 * roughness,
+            "drive.torque": scene.drive.torque * 10.0 ** rng.uniform(-0.5, 0.7),
+            "run.rtol": 10.0 ** rng.uniform(-7.0, -4.0),
+            "run.duration": 2e-3,
+            "run.samples": "off",
+        }
+    )
+
+
+def test_steps_of_drawn_trains_within_a_factor_of_three():
+    """Measured: 0.5 to 1.8, and none as far off as `check` says that they may be."""
+    for number in range(10):
+        scene = drawn_train(number)
+        ratio = run_time(scene).steps / int(gd.simulate(scene).steps)
+        assert 1.0 / 3.0 < ratio < 3.0, number
+
+
+def test_trains_that_nothing_drives_have_an_estimate():
+    train = Scene.from_dict(chain()).replace({"drive.torque": 0.0})
+    assert 0.0 < run_time(train).steps < math.inf
+    backwards = train.replace({"drive.torque": -1.2e-11, "initial.gear_speed": 0.0})
+    assert run_time(backwards).frequency > 1e5  # pressed as forwards
+
+
+def test_a_train_of_one_mesh_takes_as_long_as_its_pair():
+    short = chain()
+    train = {
+        **short,
+        "shafts": {name: short["shafts"][name] for name in ("input", "idler")},
+        "meshes": {"first": short["meshes"]["first"]},
+    }
+    scene = Scene.from_dict(train)
+    assert run_time(scene) == run_time(scene.pair("first"))
+
+
+def test_words_about_many_trains_say_their_factor():
+    scene = Scene.from_dict(chain()).replace({"run.duration": 10.0})
+    words = time_in_words([scene] * 3, 3, None)
+    assert words == f"some {in_words(3.0 * run_time(scene).seconds)}, within a factor of about five"

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gearidae.archive.train.variables import TRAIN_SAMPLES, TWO_SHAFTS
 from gearidae.cli.checking import ageing_fact
 from gearidae.cli.fact import Fact, Facts
 from gearidae.mesh.pair_contact import pair_contact
@@ -51,6 +52,12 @@ def train_facts(scene: TrainScene) -> Facts:
     for first, second in overlapping(train):
         yield Fact("tip circles overlap", f"{first} and {second}", "they must lie in different planes")
     yield from _sides(scene)
+
+
+def train_columns(scene: TrainScene) -> int:
+    """Count the samples at one time that a dataset of a train keeps."""
+    sizes = {"shaft": len(scene.train.shafts), "mesh": len(scene.train.meshes), "time": 1}
+    return sum(sizes[variable.dims[0]] for variable in TRAIN_SAMPLES.values()) + len(TWO_SHAFTS)
 
 
 def _mesh(scene: TrainScene, mesh: TrainMesh, force: float) -> Facts:

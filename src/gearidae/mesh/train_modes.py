@@ -27,7 +27,7 @@ def levers(train: Train) -> Floats:
 def natural_frequencies(scene: TrainScene, forces: Floats) -> list[float]:
     """Frequencies of small oscillations [Hz], rising, with one pair at the pitch point in every mesh that is pressed.
 
-    Square roots of the eigenvalues of ``J I^-1 J' K``, with the levers J, inertias I and stiffnesses K of the meshes.
+    See `frequencies_at`.
     """
     train = scene.train
     stiffness = np.zeros(len(train.meshes))
@@ -35,6 +35,14 @@ def natural_frequencies(scene: TrainScene, forces: Floats) -> list[float]:
         contact = pair_contact(scene.pair(mesh.name))
         gap = contact.resting_gap(float(force))
         stiffness[number] = 0.0 if math.isnan(gap) else max(contact.stiffness(gap), 0.0)
+    return frequencies_at(train, stiffness)
+
+
+def frequencies_at(train: Train, stiffness: Floats) -> list[float]:
+    """Frequencies of small oscillations [Hz], rising, by the stiffness of each mesh [N/m], 0 where it does not carry.
+
+    Square roots of the eigenvalues of ``J I^-1 J' K``, with the levers J, inertias I and stiffnesses K of the meshes.
+    """
     scaled = levers(train) / np.sqrt([shaft.inertia for shaft in train.shafts])
     roots = np.sqrt(stiffness)
     squares = np.linalg.eigvalsh(roots[:, None] * (scaled @ scaled.T) * roots)
