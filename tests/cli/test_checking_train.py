@@ -102,3 +102,17 @@ def test_a_coating_map_of_several_meshes_is_bad_input(case, capfd, tmp_path):
     assert main(["coating-map", case(chain()), "-o", str(tmp_path / "out.nc")]) == 2
     assert "meshes = (2 meshes): must be one here" in capfd.readouterr().err
     assert not (tmp_path / "out.nc").exists()
+
+
+def test_commands_take_a_stage_as_a_case_of_its_own(case, capfd, tmp_path):
+    """What a refusal says there is: the pair's case, of which a study runs."""
+    train = case(chain())
+    pull_off = ["pull-off", "--seeds", "3", "-o", str(tmp_path / "out.nc")]
+    assert main([*pull_off, train]) == 2
+    said = capfd.readouterr().err
+    assert "meshes = (2 meshes): must be one here" in said
+    assert "gearidae.dump_case(scene.pair(NAME))" in said
+    stage = gd.load_case(train).pair("second")
+    (tmp_path / "second.toml").write_text(gd.dump_case(stage))
+    assert gd.load_case(tmp_path / "second.toml") == stage
+    assert main([*pull_off, "--load", "1 uN", str(tmp_path / "second.toml")]) == 0

@@ -19,6 +19,7 @@ from gearidae.errors import SceneError
 from gearidae.records import sampled_columns
 from gearidae.scene import GearScene, Scene, TrainScene
 from gearidae.scene.judged import judged_mesh
+from gearidae.scene.scene import ONE_STAGE
 
 
 def scene_of(ds: xr.Dataset) -> dict[str, Any]:
@@ -75,8 +76,7 @@ def refuse_train(ds: xr.Dataset) -> None:
             "dataset",
             f"of a train ({ds.sizes['mesh']} meshes)",
             "must be of a pair of gears here: of trains there are speeds, forces of meshes, loads of hubs and works, "
-            "and none of single pairs of teeth; gearidae.plot.train draws the whole, and "
-            "gearidae.simulate(scene.pair(NAME)) runs a stage as a pair",
+            f"and none of single pairs of teeth; gearidae.plot.train draws the whole; {ONE_STAGE}",
         )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, Any, Self, TypeGuard
+from typing import TYPE_CHECKING, Annotated, Any, Final, Self, TypeGuard
 
 from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 
@@ -502,6 +502,12 @@ class RollerScene(Scene):
         check_no_friction(self)
 
 
+ONE_STAGE: Final = (
+    "scene.pair(NAME) is a stage of the train, gearidae.dump_case(scene.pair(NAME)) its case for commands"
+)
+"""What there is where a train of several meshes is refused."""
+
+
 def is_long_train(scene: Scene) -> TypeGuard[TrainScene]:
     """Whether a scene is a train of several meshes; one of one mesh is a pair of gears."""
     return isinstance(scene, TrainScene) and len(scene.meshes) > 1
@@ -520,7 +526,7 @@ def require_gears(scene: Scene) -> GearScene:
             raise SceneError(
                 "meshes",
                 f"({len(scene.meshes)} meshes)",
-                "must be one here: this is of a single pair; scene.pair(NAME) is a stage of the train",
+                f"must be one here: this is of a single pair; {ONE_STAGE}",
             )
         return scene.pair(next(iter(scene.meshes)))
     if not isinstance(scene, GearScene):

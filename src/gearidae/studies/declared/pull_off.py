@@ -15,7 +15,7 @@ from gearidae.populations.flanks import first_flanks
 from gearidae.progress import sweep_progress
 from gearidae.runs.execution import Execution, RunOptions
 from gearidae.runs.executors import side_by_side
-from gearidae.scene import GearScene, Scene
+from gearidae.scene import GearScene, Scene, TrainScene, require_gears
 from gearidae.scene.pairs import quantity
 from gearidae.scene.prefixes import with_prefix
 from gearidae.studies.study import Column, Option, Picture, Rows, Study
@@ -47,7 +47,7 @@ def pull_off(
     Parameters
     ----------
     scene : Scene
-        Gears or a roller, of which only radius, width and surfaces count. Asperities are drawn with
+        A pair of gears or a roller, of which only radius, width and surfaces count. Asperities are drawn with
         every ``contact.roughness``.
     seeds : int or sequence of int, optional
         Number of drawn surfaces, from ``contact.seed`` on, or the seeds themselves. A seed draws the drive flank of the
@@ -68,7 +68,7 @@ def pull_off(
     Raises
     ------
     SceneError
-        If seeds or load are not allowed, or the archive cannot be written.
+        If the scene is a train of several meshes, seeds or load are not allowed, or the archive cannot be written.
 
     Examples
     --------
@@ -77,6 +77,8 @@ def pull_off(
     >>> ds.pull_off.sizes["seed"]
     20
     """
+    if isinstance(scene, TrainScene):
+        scene = require_gears(scene)
     numbers, force = _seeds(scene, seeds), _load(scene, load)
     execution = Execution(**options)
     pieces = [numbers[first : first + _PIECE] for first in range(0, len(numbers), _PIECE)]
