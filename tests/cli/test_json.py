@@ -7,10 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.reference.trains import chain
 
 import gearidae as gd
 from gearidae.cli import main
-from gearidae.studies.declared import command_help
+from gearidae.studies.declared import command_help, studies
 
 CASES = Path(__file__).parents[2] / "cases"
 SHORT = ["--set", "run.duration=2 ms", "run.samples=201"]
@@ -108,6 +109,34 @@ def test_study_gives_its_values_and_the_rows_of_the_terminal(printed, capfd):
     assert told["answer"] in shown
     assert all(value in shown for row in told["rows"] for value in row)
     assert told == printed("info", "p.nc")
+
+
+def test_studies_of_trains_give_what_python_has(printed):
+    """Limits, parts and verdicts of each run, and what they lie along, to the last digit."""
+    train = gd.Scene.from_dict(chain(hubs=0.3)).replace({"run.duration": "30 us"})
+    Path("train.toml").write_text(gd.dump_case(train))
+    key = "meshes.second.coating.sam_fraction"
+    over = ["--over", "drive.torque=1e-11,1.2e-11", "--over", f"{key}=0.5,1"]
+    asked = {
+        "ensemble": ["--vary", f"{key}=uniform(0.4, 0.9)", "--size", "2"],
+        "operating-map": over,
+        "starting-torque": ["--impacts", "1"],
+    }
+    found = {
+        "ensemble": gd.studies.ensemble(train, {key: "uniform(0.4, 0.9)"}, 2),
+        "operating-map": gd.studies.operating_map(train, {"drive.torque": [1e-11, 1.2e-11], key: [0.5, 1.0]}),
+        "starting-torque": gd.studies.starting_torque(train, impacts=1),
+    }
+    for study, ds in found.items():
+        told = printed(study, "train.toml", *asked[study], "-o", f"{study}.nc")
+        assert told["kind"] == ds.gearidae.kind
+        assert told["sizes"] == dict(ds.sizes)
+        assert set(told["variables"]) == set(ds.variables)
+        given = {name: entry["values"] for name, entry in told["variables"].items() if "values" in entry}
+        assert set(given) >= {*ds.coords, *studies()[told["kind"]].columns} & set(ds.variables)
+        for name, values in given.items():
+            expected = [None if value != value else value for value in np.ravel(ds[name].values).tolist()]
+            assert np.ravel(np.array(values, dtype=object)).tolist() == expected, name
 
 
 def test_every_study_and_table_takes_the_option():

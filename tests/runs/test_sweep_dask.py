@@ -6,12 +6,14 @@ import sys
 
 import pytest
 import xarray as xr
+from tests.reference.trains import chain
 
 import gearidae as gd
 from gearidae.cli import main
 from gearidae.runs import batch
 from gearidae.runs.executors import dask_executor
 from gearidae.runs.run_result import solve_group
+from gearidae.scene import Scene
 from sweeps import without_times
 
 distributed = pytest.importorskip("distributed")
@@ -40,6 +42,17 @@ def test_a_cluster_changes_nothing(cluster, expected):
         with pytest.raises(gd.SceneError, match="get_executor"):
             gd.sweep(LOW, {KEY: FRACTIONS}, client)
     xr.testing.assert_identical(without_times(ds), expected)
+
+
+def test_a_cluster_changes_nothing_of_trains(cluster):
+    """Two keys of single shafts and meshes, and shafts that dry friction holds: equal to the last bit."""
+    train = Scene.from_dict(chain(hubs=0.3)).replace({"run.duration": 2e-5, "run.samples": 101})
+    over = {"meshes.second.coating.sam_fraction": [1.0, 0.5], "shafts.idler.hub_friction": [0.3, 0.5]}
+    here = without_times(gd.sweep(train, over, jobs=1))
+    with distributed.Client(cluster, set_as_default=False) as client:
+        there = gd.sweep(train, over, client.get_executor())
+    xr.testing.assert_identical(without_times(there), here)
+    assert here["shaft_speed"].dims[-2:] == ("shaft", "time")
 
 
 def test_one_lost_run_is_a_label_there_too(cluster, monkeypatch, expected):

@@ -109,14 +109,14 @@ def product_facts(path: Path, ds: xr.Dataset, kind: str) -> dict[str, Any]:
 
 
 def _contents(ds: xr.Dataset, whole: Collection[str] = ()) -> dict[str, Any]:
-    """Sizes and variables of a dataset; those named `whole`, what a study has found, with their values."""
+    """Sizes and variables of a dataset; those named `whole`, what a study has found, and coordinates with values."""
     described = {}
     for name in (*ds.coords, *ds.data_vars) if whole else ds.data_vars:
         variable = ds[name]
         described[str(name)] = {
             "dimensions": list(map(str, variable.dims)),
             "units": str(variable.attrs.get("units", "")),
-            **({"values": variable.values} if name in whole else {}),
+            **({"values": variable.values} if name in whole or (whole and name in ds.coords) else {}),
         }
     return {"sizes": {str(name): size for name, size in ds.sizes.items()}, "variables": described}
 
