@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gearidae.archive.train.variables import TRAIN_SAMPLES, TWO_SHAFTS
+from gearidae.archive.train.variables import OF_AGEING, TRAIN_SAMPLES, TWO_SHAFTS
 from gearidae.cli.checking import ageing_fact
 from gearidae.cli.fact import Fact, Facts
 from gearidae.mesh.pair_contact import pair_contact
@@ -57,7 +57,9 @@ def train_facts(scene: TrainScene) -> Facts:
 def train_columns(scene: TrainScene) -> int:
     """Count the samples at one time that a dataset of a train keeps."""
     sizes = {"shaft": len(scene.train.shafts), "mesh": len(scene.train.meshes), "time": 1}
-    return sum(sizes[variable.dims[0]] for variable in TRAIN_SAMPLES.values()) + len(TWO_SHAFTS)
+    left_out = () if ages(scene) else OF_AGEING
+    kept = {name: variable.dims[0] for name, variable in TRAIN_SAMPLES.items() if name not in left_out}
+    return sum(sizes[dim] for dim in kept.values()) + sum(source in kept for source in TWO_SHAFTS.values())
 
 
 def _mesh(scene: TrainScene, mesh: TrainMesh, force: float) -> Facts:
