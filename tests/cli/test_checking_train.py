@@ -69,8 +69,16 @@ def test_check_warns_of_ages_of_nothing(case, capfd):
         assert f"{key} has no effect without hub_friction_rise of a shaft" in out
 
 
-def test_size_of_the_samples_is_that_of_the_dataset():
-    scene = Scene.from_dict(split())
+@pytest.mark.parametrize("rise", [0.0, 0.05], ids=["dry", "ageing"])
+def test_size_of_the_samples_is_that_of_the_dataset(rise):
+    tables = chain(hubs=0.2)
+    if rise:
+        tables["shafts"]["idler"] |= {
+            "hub_friction_rise": rise,
+            "hub_ageing_time": "1 ms",
+            "hub_memory_length": "10 nm",
+        }
+    scene = Scene.from_dict(tables)
     ds = gd.simulate(scene, t_end=1e-6, samples=5)
     sampled = [ds[name].size for name in ds.data_vars if "time" in ds[name].dims]
     assert train_columns(scene) == sum(sampled) / ds.sizes["time"]
