@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from gearidae import engine
@@ -55,7 +56,7 @@ def started_from(start: xr.Dataset | str | os.PathLike[str] | None, scene: Scene
 
 def _end_of(attributes: Mapping[Any, Any]) -> engine.Start:
     """Start of a run that goes on from the one with these attributes."""
-    from gearidae.archive.end_state import end_state_of
+    from gearidae.archive.end_state import end_state_of, end_verdict_of
 
     words, began = end_state_of(attributes)
     try:
@@ -65,7 +66,7 @@ def _end_of(attributes: Mapping[Any, Any]) -> engine.Start:
     if is_long_train(theirs):
         from gearidae.engine.train import end_of_train  # which few runs need
 
-        return end_of_train(theirs, words, began)
+        return replace(end_of_train(theirs, words, began), verdict=end_verdict_of(attributes))
     return engine.end_of(theirs, words, began)
 
 
@@ -80,7 +81,7 @@ def started_attributes(start: engine.Start) -> dict[str, str]:
 
     parent = {
         "scene": json.dumps(start.scene.to_dict(), allow_nan=False),
-        **end_state_attributes(start.began, start.words),
+        **end_state_attributes(start.began, start.words, start.verdict),
     }
     return {"started_from": fingerprint(start.words), "parent": json.dumps(parent)}
 

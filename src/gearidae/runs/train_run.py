@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from gearidae.archive.disk import DiskError, disk_errors
 from gearidae.archive.journal import journal_of
-from gearidae.engine import AT_ONCE, Start
+from gearidae.engine import Start
 from gearidae.errors import Interrupted, SceneError, SolverError
 from gearidae.progress import RunProgress, run_progress
 from gearidae.records.train_results import sample_columns
@@ -77,12 +77,18 @@ def _run(
     blocks: Sequence[TrainBlock],
     on_block: OnTrainBlock | None,
 ) -> xr.Dataset:
+    from gearidae.engine.train import solve_train
+
     with run_progress(progress, start.time + scene.run.duration) as report:
-        solution = run_train(scene, backend, report, start=start, blocks=blocks, on_block=on_block)
+        solution = solve_train(
+            scene, backend=backend, on_progress=report, start=start, blocks=blocks, on_block=on_block
+        )
+    from gearidae.analysis.verdict.train import judge_chain
     from gearidae.archive.train import judged_view, train_dataset
     from gearidae.runs.imbalance import log_imbalance
 
-    ds = train_dataset(scene, solution).assign_attrs(started_attributes(start))
+    solution, verdict = judge_chain(scene, solution, start.verdict)
+    ds = train_dataset(scene, solution, verdict=verdict).assign_attrs(started_attributes(start))
     log_imbalance(judged_view(ds))
     return ds
 
@@ -170,20 +176,12 @@ def _early_end(ds: xr.Dataset, reached: float, *words: str) -> SolverError:
 
 
 def run_train(
-    scene: TrainScene,
-    backend: str,
-    on_progress: Callable[[float, int], None] | None = None,
-    *,
-    start: Start = AT_ONCE,
-    blocks: Sequence[TrainBlock] = (),
-    on_block: OnTrainBlock | None = None,
+    scene: TrainScene, backend: str, on_progress: Callable[[float, int], None] | None = None
 ) -> TrainSolution:
-    """Run a train and judge it, with a status that says how it ended; see `gearidae.engine.train.solve_train`."""
+    """Run a train by itself and judge it, with a status that says how it ended."""
     from gearidae.engine.train import solve_train  # what reads results does without it
 
-    solution = solve_train(
-        scene, backend=backend, on_progress=on_progress, start=start, blocks=blocks, on_block=on_block
-    )
+    solution = solve_train(scene, backend=backend, on_progress=on_progress)
     from gearidae.analysis.verdict.train import judge_train
 
     return judge_train(scene, solution)

@@ -108,8 +108,12 @@ class FreeTrain:
 
     def positions(self, begin: float, angle: float, times: Floats) -> Floats:
         """Angles of the judged shaft [rad] of a train that is at rest at a time and an angle."""
+        return self.follow(begin, angle, 0.0, times)[0]
+
+    def follow(self, begin: float, angle: float, speed: float, times: Floats) -> tuple[Floats, float]:
+        """Angles of the judged shaft [rad] from a time, an angle and a speed on, and its speed at the last [rad/s]."""
         where = np.full(len(times), angle)
-        now, speed, at = begin, 0.0, angle
+        now, at = begin, angle
         end = float(times[-1]) if len(times) else begin
         while now < end:
             way = self._let_go(now, at) if speed == 0.0 else math.copysign(1.0, speed)
@@ -139,10 +143,10 @@ class FreeTrain:
             if count:  # it may have stopped before the first of these times
                 where[first : first + count] = solved.y[0]
             if solved.status != 1:
-                break
+                return where, float(solved.y[1][-1]) if count else speed
             now, at, speed = float(solved.t_events[0][0]), float(solved.y_events[0][0][0]), 0.0
             where[times >= now] = at
-        return where
+        return where, speed
 
     def onset(self, begin: float, angle: float, end: float) -> float:
         """Time at which a train begins to move that is at rest at a time and an angle, or the end."""

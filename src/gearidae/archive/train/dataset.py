@@ -38,7 +38,7 @@ from gearidae.archive.variables import (
     TIME,
     run_label,
 )
-from gearidae.records import Extremes
+from gearidae.records import Extremes, Words
 from gearidae.scene.joints import ages
 from gearidae.scene.judged import judged_mesh, judged_shaft
 
@@ -49,7 +49,11 @@ if TYPE_CHECKING:
 
 
 def train_dataset(
-    scene: TrainScene, solution: TrainSolution, selection: OutputSelection = EVERYTHING
+    scene: TrainScene,
+    solution: TrainSolution,
+    selection: OutputSelection = EVERYTHING,
+    *,
+    verdict: Words | None = None,
 ) -> xr.Dataset:
     """Label one run of a train.
 
@@ -61,6 +65,8 @@ def train_dataset(
         Result of the engine, judged.
     selection : OutputSelection, optional
         Which variables the dataset has; by default all.
+    verdict : ndarray of 8-byte words, optional
+        What runs that go on from this one have to know for their verdicts.
 
     Returns
     -------
@@ -113,7 +119,7 @@ def train_dataset(
             "judged_mesh": scene.train.meshes[judged_mesh(scene)].name,
             "drive_shaft": scene.train.shafts[scene.train.drive].name,
             **({"held_by": ", ".join(solution.held_by)} if solution.held_by else {}),
-            **end_state_attributes(solution.start, solution.checkpoint),
+            **end_state_attributes(solution.start, solution.checkpoint, verdict),
             "t_end": solution.start + scene.run.duration,
         },
     )

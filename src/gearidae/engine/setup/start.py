@@ -26,6 +26,8 @@ class Start:
         State in which that run ended, see `gearidae.engine.setup.checkpoint`.
     began : float
         When that run itself began [s].
+    verdict : ndarray, optional
+        What the verdict of that run has to know of its chain; of trains alone, the engine's state has it of pairs.
     checkpoint : ndarray, optional
         Newest checkpoint of this run, from a `Block` of the same backend, to resume from.
     reached, wall_time : float
@@ -41,6 +43,7 @@ class Start:
     scene: Scene | None = None
     words: Floats | None = None
     began: float = 0.0
+    verdict: Floats | None = None
     checkpoint: Floats | None = None
     reached: float = 0.0
     wall_time: float = 0.0

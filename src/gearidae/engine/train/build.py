@@ -11,6 +11,7 @@ from typing import Final
 import numpy as np
 
 from gearidae.engine.compiling import TRAIN, make_part_ready
+from gearidae.engine.events.sliding import AT_ONCE as CREEPS
 from gearidae.engine.events.sliding import STILL
 from gearidae.engine.model.addresses import Addresses
 from gearidae.engine.model.state import DRIVE, Floats, Model, Record
@@ -325,9 +326,11 @@ def _add_tolerances(tm: TrainModel, scene: TrainScene, problems: tuple[Problem, 
         tm.weights[n + i] = tm.train[0].tau / (rtol * min(angle for angle, _ in own))
     for mesh in tm.meshes:
         for side, radius in (("a", "driver_radius"), ("b", "driven_radius")):
-            shaft, torque = tm.shafts[int(mesh[side])], NO_FORCE * float(mesh["force_unit"] * mesh[radius])
-            still = STILL * float(mesh["length_unit"] / (mesh[radius] * mesh["time_unit"]))
-            shaft["still"] = max(float(shaft["still"]), still)
+            at, torque = int(mesh[side]), NO_FORCE * float(mesh["force_unit"] * mesh[radius])
+            shaft = tm.shafts[at]
+            unit = float(mesh["length_unit"] / (mesh[radius] * mesh["time_unit"]))
+            shaft["still"] = max(float(shaft["still"]), STILL * unit)
+            shaft["creeps"] = max(float(shaft["creeps"]), CREEPS * unit, 1.0 / float(tm.weights[n + at]))
             shaft["no_torque"] = max(float(shaft["no_torque"]), torque)
     # a phase matters by the gap it opens where tip relief is steepest
     steepest = [

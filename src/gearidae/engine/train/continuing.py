@@ -20,18 +20,18 @@ from gearidae.engine.setup.checkpoint import depth_of, pack
 from gearidae.engine.setup.checkpoint_checks import refused, require
 from gearidae.engine.setup.start import Start
 from gearidae.engine.train.build import TrainProblem, make_train
-from gearidae.engine.train.layout import TrainOutput
+from gearidae.engine.train.layout import TrainOutput, which_rest
 from gearidae.engine.train.observe import kinetic_energy_of, write_stored
 from gearidae.engine.train.record import record_at_shaft
 from gearidae.engine.train.rest import switch_rest
 from gearidae.engine.train.start import take_up, write_own_state
-from gearidae.engine.train.sticking import switch_sticking
+from gearidae.engine.train.sticking import find_kept, switch_sticking
 from gearidae.records import EventKind, Words
 from gearidae.records.quantity import COUNT_HIGH
 from gearidae.scene.scene import TrainScene
 
 _OF_TRAIN: Final = ("whole_pitches", "time", "step", "throughput", "peak_kinetic", "kinetic", "last_root")
-_OF_SHAFT: Final = ("begin", "slip", "rest_begin", "rest_time", "min_speed", "max_speed")
+_OF_SHAFT: Final = ("begin", "slip", "kept", "rest_begin", "rest_time", "min_speed", "max_speed")
 _OF_MESH: Final = ("largest", "largest_time", "smallest", "smallest_time", "separation")
 _OF_JOINT: Final = ("age",)
 """Numbers of the records that a run carries on, with those that a run after it carries on, too."""
@@ -105,6 +105,7 @@ def restore_train(problem: TrainProblem, words: Words) -> None:
     whole = of_train[len(_OF_TRAIN) :]
     require(bool(((whole >= 0) & (whole < COUNT_HIGH) & (whole % 1.0 == 0.0)).all()), "counters", "counts")
     require(bool(np.isin(of_shafts[1 :: len(_OF_SHAFT)], (-1.0, 0.0, 1.0)).all()), "slip", "-1, 0 or 1")
+    require(bool(np.isin(of_shafts[2 :: len(_OF_SHAFT)], (0.0, 1.0)).all()), "kept", "0 or 1")
     for pair, mine in zip(problem.problems, meshes, strict=True):
         pair.restore(mine, np.empty(tm.own.size))
     for name, value in zip((*_OF_TRAIN, *_COUNTS), of_train, strict=True):
@@ -230,15 +231,25 @@ def _carry_rest(old: TrainProblem, new: TrainProblem, out: TrainOutput) -> None:
     """Let shafts slip that are not held any longer; where nothing rubs now, or did before, the speed says the slip."""
     tm = new.model
     t = float(tm.train[0].time)
+    rested = which_rest(old.model)
     for i, (before, shaft) in enumerate(zip(old.model.shafts, tm.shafts, strict=True)):
         if before["rubs"] == shaft["rubs"]:
             continue
         speed = float(tm.y[len(tm.shafts) + i])
-        if before["rubs"] and before["slip"] == 0.0:
+        if rested[i]:
             shaft["rest_time"] += t - shaft["rest_begin"]
             record_at_shaft(tm, t, float(EventKind.SLIP), i, out)
         shaft["slip"], shaft["rest_begin"] = math.copysign(1.0, speed) if speed else 0.0, t
+        shaft["kept"] = 0
     if tm.train[0].flanks != 0:
         switch_sticking(tm, t, tm.y, out)
     else:
         switch_rest(tm, t, tm.y, out)
+    kept = tm.shafts["kept"].copy()
+    if kept.any():  # by flanks of meshes that may have no friction now
+        tm.shafts["kept"] = 0
+        find_kept(tm, t, tm.y)
+    for i, lost in enumerate(kept > tm.shafts["kept"]):
+        if lost:
+            tm.shafts[i]["rest_time"] += t - tm.shafts[i]["rest_begin"]
+            record_at_shaft(tm, t, float(EventKind.SLIP), i, out)

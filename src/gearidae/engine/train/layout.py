@@ -20,9 +20,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.arrays import Floats
-from gearidae.compiled import name_type
+from gearidae.compiled import compiled, name_type
 from gearidae.engine.events.record import EVENT_NUMBERS, EVENTS_AT_ONCE
-from gearidae.engine.model.record_types import INT, REAL, record_type
+from gearidae.engine.model.record_types import INT, REAL, Record, record_type
 from gearidae.engine.train.box import BOX_ROWS
 
 SHAFT: Final = record_type(
@@ -40,16 +40,20 @@ SHAFT: Final = record_type(
     ("hub_radius", REAL),  # [m]
     ("begin", REAL),  # departure at the start [rad]
     ("still", REAL),  # speed below which it counts as at rest beside flanks with friction [rad/s]
+    ("creeps", REAL),  # speed below which it may creep towards rest, or that of its tolerance [rad/s]
     ("no_torque", REAL),  # torque that counts as none [N m]
     # state
     ("slip", REAL),  # direction of slip: 1, -1, or 0 of a shaft that is held
-    ("rest_begin", REAL),  # since when it is held [s]
+    ("kept", INT),  # 1 of a shaft without friction of its own that tooth pairs keep at rest
+    ("rest_begin", REAL),  # since when it is at rest [s]
     ("rest_time", REAL),  # of all rests that have ended [s]
     ("min_speed", REAL),  # [rad/s]
     ("max_speed", REAL),  # [rad/s]
     # of the last evaluation
     ("torque", REAL),  # without its own friction [N m]
     ("before", REAL),  # direction of slip before the decisions of one time
+    ("rested", INT),  # 1 if it was at rest before them
+    ("slow", INT),  # 1 if it may creep towards rest
     ("moving_torque", REAL),  # without the friction of pairs that roll [N m]
     ("moving_x", REAL),  # force on its hub without that [N]
     ("moving_y", REAL),
@@ -278,6 +282,19 @@ def blank_train(shafts: int, meshes: int, histories: int = 0) -> TrainModel:
 
 
 name_type(blank_train(1, 1), "TrainModel")
+
+
+@compiled(inline=True)
+def is_at_rest(shaft: Record) -> bool:
+    """Whether a shaft stands: its own friction holds it, or tooth pairs keep it at rest."""
+    return bool((shaft.rubs != 0 and shaft.slip == 0.0) or shaft.kept != 0)
+
+
+def which_rest(tm: TrainModel) -> NDArray[np.bool_]:
+    """Tell of all shafts whether they stand, see `is_at_rest`."""
+    shafts = tm.shafts
+    held = (shafts["rubs"] != 0) & (shafts["slip"] == 0.0) | (shafts["kept"] != 0)
+    return np.asarray(held, dtype=np.bool_)
 
 
 class TrainOutput(NamedTuple):

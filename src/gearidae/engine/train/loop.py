@@ -10,6 +10,7 @@ from gearidae.compiled import compiled
 from gearidae.engine.events.record import EVENTS_AT_ONCE
 from gearidae.engine.integrate.driver import BOUND_EXCEEDED, CHATTER
 from gearidae.engine.train.ageing import follow_ageing
+from gearidae.engine.train.creeping import stop_creeping_shafts
 from gearidae.engine.train.events import (
     accept_all,
     next_train_stop,
@@ -221,6 +222,8 @@ def finish_train_step(tm: TrainModel, time: float, root: bool, stop: float, out:
             train.error = CHATTER
         if train_way_left(tm, y) <= 0.0:
             train.done = 1
+    if any_held(tm) and stop_creeping_shafts(tm, time, y, out):
+        train.fresh = 1
     if time >= stop:
         train.fresh = 1
         if pass_knots(tm, time, out):

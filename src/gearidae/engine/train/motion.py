@@ -28,7 +28,7 @@ from gearidae.engine.pairs.mesh_error import MeshError, error_at
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.train.ageing import set_joint_friction
 from gearidae.engine.train.flanks import add_flank_friction, hold_elements, set_limit
-from gearidae.engine.train.layout import OF_MESH, OF_SHAFT, OF_TRAIN, TrainModel
+from gearidae.engine.train.layout import OF_MESH, OF_SHAFT, OF_TRAIN, TrainModel, is_at_rest
 from gearidae.laws.shaft.own import law_force
 from gearidae.laws.shafts import acting, driving_force, is_constant, pinion_force
 
@@ -177,7 +177,7 @@ def motion(tm: TrainModel, t: float, y: Floats, dy: Floats) -> None:
     for i in range(n):
         shaft, w = shafts[i], y[n + i]
         hub = set_limit(tm, i)
-        free = shaft.slip != 0.0 or shaft.rubs == 0
+        free = not is_at_rest(shaft)
         dy[n + i] = (shaft.torque - shaft.slip * shaft.limit) / shaft.inertia if free else 0.0
         dy[i] = w - shaft.ratio * y[n + train.load]
         if train.balance != 0:

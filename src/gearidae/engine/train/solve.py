@@ -17,7 +17,7 @@ from gearidae.engine.integrate.driver import ending_of_flag
 from gearidae.engine.setup.start import AT_ONCE, Start
 from gearidae.engine.train.build import TrainProblem, make_train
 from gearidae.engine.train.continuing import pack_train, restore_train, train_from
-from gearidae.engine.train.layout import OF_MESH, OF_SHAFT, OF_TRAIN, TrainModel, TrainOutput
+from gearidae.engine.train.layout import OF_MESH, OF_SHAFT, OF_TRAIN, TrainModel, TrainOutput, which_rest
 from gearidae.engine.train.loop import LOOKS, advance_train
 from gearidae.engine.train.motion import torque_slopes
 from gearidae.engine.train.observe import kinetic_energy_of, write_stored
@@ -280,9 +280,8 @@ def _flanks_held(tm: TrainModel) -> tuple[int, ...]:
 def _resting(tm: TrainModel) -> NDArray[np.float64]:
     """Intervals at rest that have not ended."""
     rows = [
-        (i, float(shaft["rest_begin"]), float(tm.train[0].time))
-        for i, shaft in enumerate(tm.shafts)
-        if shaft["rubs"] and shaft["slip"] == 0.0
+        (i, float(tm.shafts[i]["rest_begin"]), float(tm.train[0].time))
+        for i in np.flatnonzero(which_rest(tm))
     ]
     return np.array(rows, dtype=float).reshape(-1, REST_NUMBERS)
 
@@ -297,8 +296,7 @@ def _totals(problem: TrainProblem) -> TrainTotals:
     of_train = works[OF_SHAFT * n + OF_MESH * meshes :]
     drive, dry, drags, pin = (float(x) for x in of_train[:OF_TRAIN])
     rubbed = of_train[OF_TRAIN:].copy() if tm.train[0].flanks else np.zeros(meshes)
-    held = np.array([bool(shaft["rubs"]) and shaft["slip"] == 0.0 for shaft in tm.shafts])
-    rest = tm.shafts["rest_time"] + np.where(held, tm.train[0].time - tm.shafts["rest_begin"], 0.0)
+    rest = tm.shafts["rest_time"] + np.where(which_rest(tm), tm.train[0].time - tm.shafts["rest_begin"], 0.0)
     shaft_totals = {
         "min_speed": tm.shafts["min_speed"].copy(),
         "max_speed": tm.shafts["max_speed"].copy(),

@@ -8,6 +8,7 @@ what is held and which way the rest slips (`gearidae.engine.train.box`).
 from __future__ import annotations
 
 import math
+from typing import Final
 
 from gearidae.arrays import Floats
 from gearidae.compiled import compiled
@@ -35,13 +36,16 @@ from gearidae.engine.train.flanks import (
     pair_speeds,
     slide_of,
 )
-from gearidae.engine.train.layout import TrainModel, TrainOutput
+from gearidae.engine.train.layout import TrainModel, TrainOutput, is_at_rest
 from gearidae.engine.train.motion import motion
 from gearidae.engine.train.record import record_at_shaft, take_from_mesh
 from gearidae.records import EventKind
 
 _STICK, _SLIP = float(EventKind.STICK), float(EventKind.SLIP)
 _REVERSAL = float(EventKind.SLIDING_REVERSAL)
+DETERMINED: Final = 1e-9
+"""Share of a shaft's acceleration that elements leave, below which they leave none; rounding is some 1e-16 over the
+square of the angle between the rows of two pairs, with masses counted."""
 
 
 @compiled
@@ -109,7 +113,7 @@ def begin_sticking(tm: TrainModel, t: float, y: Floats) -> bool:
     motion(tm, t, y, tm.rates[0])
     _begin_to_rub(tm, y)
     if _any_at_rest(tm):
-        _decide(tm, t, y)
+        decide(tm, t, y, SMALL)
     return bool(tm.train[0].error == 0)
 
 
@@ -158,11 +162,7 @@ def switch_sticking(tm: TrainModel, t: float, y: Floats, out: TrainOutput) -> bo
     motion(tm, t, y, tm.rates[0])
     alone = tm.train[0].elements == 0
     stands = not alone and _margin(tm) < 0.5
-    for k in range(len(tm.meshes)):
-        if tm.meshes[k].flanks != 0:
-            note_directions(model_at(tm.meshes[k].address))
-    for i in range(n):
-        tm.shafts[i].before = tm.shafts[i].slip
+    note_rests(tm)
     changed, stopped = _begin_to_rub(tm, y)
     stands |= stopped
     for k in range(len(tm.meshes)):
@@ -181,35 +181,89 @@ def switch_sticking(tm: TrainModel, t: float, y: Floats, out: TrainOutput) -> bo
         elif shaft.slip == 0.0 and alone and shaft.limit < abs(shaft.torque):
             stands = True
     if stands:
-        _decide(tm, t, y)
-        _record(tm, t, out)
+        decide(tm, t, y, SMALL)
+        record_rests(tm, t, out)
     return changed or stands
 
 
 @compiled
-def _record(tm: TrainModel, t: float, out: TrainOutput) -> None:
+def note_rests(tm: TrainModel) -> None:
+    """Note all directions of slip, and what is at rest, before the decisions of one time."""
+    for k in range(len(tm.meshes)):
+        if tm.meshes[k].flanks != 0:
+            note_directions(model_at(tm.meshes[k].address))
+    for i in range(len(tm.shafts)):
+        shaft = tm.shafts[i]
+        shaft.before, shaft.rested = shaft.slip, int(is_at_rest(shaft))
+
+
+@compiled
+def record_rests(tm: TrainModel, t: float, out: TrainOutput) -> None:
     """Record the directions that have changed, and begin and end rests of shafts."""
     for k in range(len(tm.meshes)):
         if tm.meshes[k].flanks != 0:
             m = model_at(tm.meshes[k].address)
             take_from_mesh(tm, k, record_changes(m, t / tm.meshes[k].time_unit, tm.few, 0), out)
     for i in range(len(tm.shafts)):
-        shaft = tm.shafts[i]
-        if shaft.rubs == 0 or shaft.slip == shaft.before:
-            continue
-        if shaft.slip == 0.0:
+        shaft, rests = tm.shafts[i], is_at_rest(tm.shafts[i])
+        if rests and shaft.rested == 0:
             shaft.rest_begin = t
             record_at_shaft(tm, t, _STICK, i, out)
-        elif shaft.before == 0.0:
+        elif shaft.rested != 0 and not rests:
             shaft.rest_time += t - shaft.rest_begin
             record_at_shaft(tm, t, _SLIP, i, out)
-        else:
+        elif shaft.slip != shaft.before:
             record_at_shaft(tm, t, _REVERSAL, i, out)
 
 
 @compiled
-def _decide(tm: TrainModel, t: float, y: Floats) -> None:
-    """Decide on all that is at rest: what is held, and which way the others slip."""
+def decide(tm: TrainModel, t: float, y: Floats, allowed: float) -> None:
+    """Decide on all that is at rest: what is held, which way the others slip, and which shafts pairs keep at rest.
+
+    What is held may lack so much friction, over the force that counts as none.
+    """
+    for i in range(len(tm.shafts)):  # a shaft that is kept at rest would show no acceleration
+        tm.shafts[i].kept = 0
+    _decide_on_elements(tm, t, y, allowed)
+    find_kept(tm, t, y)
+
+
+@compiled
+def find_kept(tm: TrainModel, t: float, y: Floats) -> None:
+    """Find the shafts without friction of their own whose speeds follow from what is at rest, and are zero.
+
+    Two pairs of a mesh keep both of its shafts, one pair the shaft beside one that stands; in a loop pairs of all
+    meshes do. A shaft is kept if a torque on it alone accelerates nothing: if its row is one of those of the elements.
+    """
+    motion(tm, t, y, tm.rates[15])
+    train, n = tm.train[0], len(tm.shafts)
+    for i in range(n if train.elements > 0 else 0):
+        shaft = tm.shafts[i]
+        if shaft.rubs != 0:
+            continue
+        for j in range(train.elements):
+            tm.box[BOUND, j], tm.box[LEFT, j] = 0.0, share_of(tm, i, j) / shaft.inertia
+        solve_free(train.elements, tm.gram, tm.work, tm.box)
+        left = 1.0
+        for j in range(train.elements):
+            left -= share_of(tm, i, j) * tm.box[STEP, j]
+        # a light shaft beside a very heavy one nearly follows from a pair that rolls on both: it moves with that
+        shaft.kept = int(abs(left) <= DETERMINED and abs(y[n + i]) <= shaft.still)
+    for i in range(n):
+        if tm.shafts[i].kept != 0:
+            y[n + i] = 0.0
+
+
+@compiled
+def share_of(tm: TrainModel, i: int, j: int) -> float:
+    """Speed of an element at rest per speed of a shaft."""
+    element = tm.elements[j]
+    return float((element.first if element.a == i else 0.0) + (element.second if element.b == i else 0.0))
+
+
+@compiled
+def _decide_on_elements(tm: TrainModel, t: float, y: Floats, allowed: float) -> None:
+    """Take out the speeds of what is at rest, and let go what its friction can not hold."""
     _stop(tm, t, y)
     while _add_still(tm, y):
         _stop(tm, t, y)
@@ -225,7 +279,7 @@ def _decide(tm: TrainModel, t: float, y: Floats) -> None:
         return
     for j in range(train.elements):
         missing = missing_friction(j, tm.gram, tm.box)
-        if abs(missing) <= SMALL:
+        if abs(missing) <= allowed:
             continue
         element, way = tm.elements[j], math.copysign(1.0, missing)
         if element.mesh < 0:
