@@ -127,6 +127,89 @@ def test_more_torque_lets_a_held_train_go():
     np.testing.assert_allclose(still["rest_time"], held["rest_time"] + 1e-3, rtol=1e-9)
 
 
+def standing():
+    """A chain whose hubs hold it until the drive rises, and that its dry load stops."""
+    knots = [[0.0, 0.0], [0.1e-3, 7.9e-12], [1.2e-3, 7.9e-12], [1.4e-3, 1e-11], [1.8e-3, 0.0], [2.6e-3, 0.0]]
+    rest = {"gear_speed": 0.0, "gap": "30 nm", "mesh_phase": 0.3}
+    scene = Scene.from_dict(chain(hubs=0.3, drive={"torque": 0.0, "schedule": knots}, initial=rest))
+    return scene.replace({"run.rtol": 1e-8, "run.samples": 27})
+
+
+@cache
+def stood():
+    return gd.simulate(standing().replace({"run.duration": "2.6 ms"}))
+
+
+@pytest.mark.parametrize(
+    "cuts", [(0.6e-3,), (0.3e-3, 0.6e-3, 2.3e-3), (1.5e-3,)], ids=["standing", "thrice", "just let go"]
+)
+def test_a_chain_has_the_standstills_of_the_whole_run(cuts):
+    """A standstill may begin in one run, let go in the next and be left in a third; free gears go on with it.
+
+    Distances are those at looks, 2001 a run.
+    """
+    whole, parts, before = stood(), [], 0.0
+    for end in (*cuts, 2.6e-3):
+        start = parts[-1] if parts else None
+        parts.append(gd.simulate(standing().replace({"run.duration": end - before}), start=start))
+        before = end
+    joined = gd.concat(parts, dim="time")
+    expected, found = (ds.gearidae.standstills() for ds in (whole, joined))
+    assert found.verdict.tolist() == expected.verdict.tolist() == ["sticks", "stops"]
+    assert found.held_by.tolist() == expected.held_by.tolist()
+    for name in ("begin", "end", "rest_time"):
+        np.testing.assert_allclose(found[name], expected[name], rtol=1e-8, err_msg=name)
+    for name in ("advance", "free_advance", "held_torque"):
+        np.testing.assert_allclose(found[name], expected[name], rtol=1e-2, err_msg=name)
+    for name in (
+        "standing_time",
+        "start_time",
+        "breakaway_torque",
+        "stick_time",
+        "stick_exits",
+        "mesh_exits",
+    ):
+        assert joined[name].values == pytest.approx(whole[name].values, rel=1e-8), name
+    for name in ("settled_gear_speed", "late_gear_speed", "settled_spread", "speed_fall"):
+        assert float(joined[name]) == pytest.approx(float(whole[name]), rel=2e-2), name
+    (once,), (pieces,) = (gd.outcomes(ds) for ds in (whole, joined))
+    assert pieces.words == once.words
+
+
+def test_what_a_verdict_has_of_earlier_runs_may_be_damaged_or_missing():
+    """Without it, as in an archive of before, the chain of the verdict begins with the run."""
+    first = gd.simulate(standing().replace({"run.duration": "0.6 ms"}))
+    more = standing().replace({"run.duration": "0.9 ms"})
+    words = np.frombuffer(zlib.decompress(base64.b64decode(first.attrs["end_verdict"])), np.float64).copy()
+    for damaged in (words[:-1], np.append(words, 0.0), np.where(np.arange(words.size) == 1, -1.0, words)):
+        text = base64.b64encode(zlib.compress(damaged.tobytes())).decode()
+        with pytest.raises(gd.SceneError, match=r"start = end_verdict: is damaged"):
+            gd.simulate(more, start=first.assign_attrs(end_verdict=text))
+    with pytest.raises(gd.SceneError, match=r"start = end_verdict: is damaged"):
+        gd.simulate(more, start=first.assign_attrs(end_verdict="?"))
+    before = first.copy()
+    before.attrs.pop("end_verdict")
+    short, whole = (gd.simulate(more, start=start) for start in (before, first))
+    np.testing.assert_array_equal(short["shaft_speed"], whole["shaft_speed"])
+    assert whole.gearidae.standstills().free_advance[0] > short.gearidae.standstills().free_advance[0]
+
+
+def test_a_train_that_turns_back_turns_back_in_its_chain():
+    """By how far, since when, and by how far free gears have: from a farthest place in the first run."""
+    back = {"torque": 1e-11, "schedule": [[0.0, 0.0], [0.1e-3, -2.2e-11], [1e-3, -2.2e-11]]}
+    tables = chain(drive=back, load={"torque": 0.0, "drag": 8e-18})
+    scene = Scene.from_dict(tables).replace({"run.rtol": 1e-8, "run.samples": 11})
+    whole = gd.simulate(scene.replace({"run.duration": "0.6 ms"}))
+    turned = float(whole["back_time"])
+    first = gd.simulate(scene.replace({"run.duration": 1.2 * turned}))
+    assert float(first["turned_back"]) == 0.0
+    second = gd.simulate(scene.replace({"run.duration": 0.6e-3 - 1.2 * turned}), start=first)
+    assert float(whole["turned_back"]) > 1.0
+    for name in ("turned_back", "free_turned_back", "back_time"):
+        assert float(second[name]) == pytest.approx(float(whole[name]), rel=1e-3), name
+    assert gd.outcomes(second)[0].words == gd.outcomes(whole)[0].words
+
+
 @pytest.mark.parametrize(
     ("changes", "message"),
     [

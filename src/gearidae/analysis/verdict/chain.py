@@ -41,8 +41,8 @@ class Zero:
         When they began to move [s]; NaN if they had not.
     held_torque, driven_time, rest_time : float
         As of a standstill that begins there.
-    slip : float
-        End of the last rest [s]; NaN without one.
+    slip, slip_torque : float
+        End of the last rest [s], and the torque of the drive then [N m]; NaN without one.
     grown : ndarray, shape (3, n)
         Times [s], and the farthest distances of the shaft and of free gears until then [pitches].
     """
@@ -57,6 +57,7 @@ class Zero:
     driven_time: float = 0.0
     rest_time: float = 0.0
     slip: float = math.nan
+    slip_torque: float = math.nan
     grown: Floats = field(default_factory=lambda: np.empty((3, 0)))
 
     def numbers(self) -> Floats:
@@ -67,7 +68,7 @@ class Zero:
 
 _OF_ZERO: Final = (
     *("time", "angle", "exits", "free_angle", "free_speed", "onset", "held_torque", "driven_time"),
-    *("rest_time", "slip"),
+    *("rest_time", "slip", "slip_torque"),
 )
 
 

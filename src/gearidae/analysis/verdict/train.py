@@ -86,6 +86,7 @@ class _Motion:
             track.samples[name][self.shaft] if track.time.size else np.empty(0)
             for name in ("shaft_speed", "shaft_angle")
         )
+        self.torque = track.samples["drive_torque"] if track.time.size else np.empty(0)
         self.zero_time, self.zero_angle = track.zero_time, track.zero_angle
         rests = solution.rests
         mine = np.flatnonzero(rests["shaft"] == self.shaft)
@@ -120,10 +121,14 @@ class _Motion:
         own = sum(max(min(stop, end) - max(start, since), 0.0) for start, stop in self.rests)
         return zero.rest_time + own
 
-    def slip(self, zero: Zero, end: float) -> float:
-        """End of the last rest after a zero until an end [s]; NaN without one."""
+    def slip(self, zero: Zero, end: float) -> tuple[float, float]:
+        """End of the last rest after a zero until an end [s], and the drive's torque then [N m]; NaN without one."""
         slips = [slip for _, slip in self.rests if zero.time < slip <= end]
-        return slips[-1] if slips else zero.slip
+        return (slips[-1], self.torque_at(slips[-1])) if slips else (zero.slip, zero.slip_torque)
+
+    def torque_at(self, t: float) -> float:
+        """Torque of the drive at a time of this run [N m]."""
+        return float(np.interp(t, self.time, self.torque))
 
     def way(self, free: FreeTrain, zero: Zero, end: float) -> _Way:
         """Ways of the shaft and of free gears from a zero to an end."""
@@ -215,8 +220,9 @@ def _judgement(
     free = FreeTrain(scene)
     turn = _turn(motion, free)
     numbers |= _back(motion, turn)
+    found = list(_standstills(motion, free))
     earlier = [] if motion.before is None else [_Standstill(*row) for row in motion.before.rows.tolist()]
-    standstills = [*earlier, *_standstills(motion, free)]
+    standstills = [*earlier, *(still for still, _ in found)]
     ended = [still for still in standstills if not math.isnan(still.end)]
     started = ended[-1].end if ended else 0.0 if not standstills else math.nan
     numbers |= {
@@ -227,8 +233,7 @@ def _judgement(
     }
     breakaway = math.nan if motion.before is None else motion.before.breakaway
     if len(ended) > len(earlier):
-        torque = solution.track.samples["drive_torque"]
-        breakaway = float(np.interp(started, motion.time, torque))
+        breakaway = found[len(ended) - len(earlier) - 1][1]
     if ended:
         numbers["breakaway_torque"] = breakaway
     held: tuple[str, ...] = ()
@@ -268,7 +273,7 @@ def _speed_of_chain(motion: _Motion) -> tuple[Floats, Floats]:
     if motion.before is None or not motion.time.size:
         return motion.time, motion.speed
     time = np.concatenate([motion.before.time[:-1], motion.time])
-    chosen = evenly(time, motion.time.size)
+    chosen = evenly(time, int((time[-1] - time[0]) / np.diff(time).max()) + 1)
     return time[chosen], np.concatenate([motion.before.speed[:-1], motion.speed])[chosen]
 
 
@@ -293,8 +298,10 @@ def _speeds(time: Floats, speed: Floats, end: float) -> dict[str, float]:
     return made
 
 
-def _standstills(motion: _Motion, free: FreeTrain) -> Iterator[_Standstill]:
-    """Yield the standstills of the shaft in the order of time; the end of one that lasts is NaN.
+def _standstills(motion: _Motion, free: FreeTrain) -> Iterator[tuple[_Standstill, float]]:
+    """Yield the standstills of the shaft in the order of time, and the torques of the drive at their ends [N m].
+
+    The end of one that lasts is NaN.
 
     A zero of the speed that is no standstill is followed by others of the same rocking: the next that counts is one
     after a new farthest position.
@@ -312,10 +319,12 @@ def _standstills(motion: _Motion, free: FreeTrain) -> Iterator[_Standstill]:
             earlier.append(zero)
             low, high = min(low, zero.angle), max(high, zero.angle)
             continue
+        torque = motion.torque_at(end)
         if left is not None:
-            slip = motion.slip(zero, end)
-            still = still._replace(end=end if math.isnan(slip) else slip)
-        yield still
+            slip, torque_then = motion.slip(zero, end)
+            end_of_it, torque = (end, torque) if math.isnan(slip) else (slip, torque_then)
+            still = still._replace(end=end_of_it)
+        yield still, torque
         until, low, high = end, math.inf, -math.inf
 
 
@@ -370,6 +379,7 @@ def _zeros_left(motion: _Motion, free: FreeTrain) -> Iterator[Zero]:
             continue
         low, high = min(low, zero.angle), max(high, zero.angle)
         way, onset = motion.way(free, zero, end), motion.onset(free, zero, end)
+        slip, slip_torque = motion.slip(zero, end)
         held_torque, driven_time = motion.driven(free, zero, end)
         yield Zero(
             time=zero.time,
@@ -381,7 +391,8 @@ def _zeros_left(motion: _Motion, free: FreeTrain) -> Iterator[Zero]:
             held_torque=held_torque,
             driven_time=driven_time,
             rest_time=motion.rested(zero, end),
-            slip=motion.slip(zero, end),
+            slip=slip,
+            slip_torque=slip_torque,
             grown=way.grown[:, evenly(way.grown[0], GROWN_KEPT)],
         )
 
