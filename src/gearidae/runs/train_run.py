@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from gearidae.archive.disk import DiskError, disk_errors
 from gearidae.archive.journal import journal_of
-from gearidae.engine import Start
+from gearidae.engine import AT_ONCE, Start
 from gearidae.errors import Interrupted, SceneError, SolverError
 from gearidae.progress import RunProgress, run_progress
 from gearidae.records.train_results import sample_columns
