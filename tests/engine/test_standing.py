@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import gearidae as gd
 from gearidae.analysis.verdict import outcomes
@@ -330,6 +331,55 @@ def test_gears_whose_hubs_hold_little_break_away_at_the_closed_form(coefficient,
     # its teeth ring, by some parts of ten thousand of the force
     assert float(ds.breakaway_torque) == pytest.approx(wanted, rel=2e-3, abs=0)
     assert ds.gearidae.standstills().rest_time.iloc[0] > 0.9 * float(ds.start_time)
+
+
+def rigid_way(scene, coefficient, radii, top, ramp):
+    """Way of rigid gears at rest up to their starting torque, whose hubs rub, in pitches at the end of the ramp.
+
+    The tooth force F moves the gear, ``I2 w' / R2 = (R2 - mu r2) F - M - c w^2`` with the speed of the base circles
+    ``R2 w``, and takes ``(R1 + mu r1) F`` from the torque at the pinion.
+    """
+    pinion, gear, load = scene.geometry.base_radius_pinion, scene.geometry.base_radius_gear, scene.load
+    ratio = (pinion + coefficient * radii[0]) / (gear - coefficient * radii[1])
+    inertia = scene.gears.pinion_inertia / pinion + ratio * scene.gears.gear_inertia / gear
+    begin = ratio * load.torque / top * ramp
+
+    def rates(t, y):
+        return y[1], (top / ramp * t - ratio * load.drag * (y[1] / gear) ** 2) / inertia
+
+    way = solve_ivp(rates, (0.0, ramp - begin), (0.0, 0.0), rtol=1e-9, atol=1e-20).y[0, -1]
+    return way / (2.0 * math.pi * gear / scene.gears.gear_teeth)
+
+
+@pytest.mark.parametrize(
+    ("coefficient", "radii", "dry", "top", "ramp"),
+    [
+        (0.167078, (2.479284e-6, 1.956728e-5), 4.946886e-17, 2.680208e-17, 0.183796),  # 0.29 pitches
+        (0.211848, (5.735133e-6, 1.619656e-5), 4.920720e-17, 2.891127e-17, 0.217327),  # 0.493
+        (0.316425, (3.596843e-6, 1.502417e-5), 3.511062e-17, 2.260507e-17, 0.211830),  # 0.504
+    ],
+)
+def test_gears_have_broken_away_once_they_have_turned_on_by_half_a_pitch(coefficient, radii, dry, top, ramp):
+    scene = PAIR.replace(held_by_hubs(coefficient, radii, dry, top, ramp) | {"run.samples": 3})
+    way = rigid_way(scene, coefficient, radii, top, ramp)
+    ds = gd.simulate(scene)
+    # teeth give way, and ring, by less than a thousandth of a pitch
+    assert float(ds.gear_angle[-1]) * 54 / (2.0 * math.pi) == pytest.approx(way, abs=1e-3)
+    assert math.isnan(float(ds.breakaway_torque)) == math.isnan(float(ds.start_time)) == (way < 0.5)
+
+
+def test_a_gear_breaks_away_at_the_force_that_holds_it_where_its_pinion_overshoots():
+    """The pinion's hub lets go 0.5 ms before: it comes with a speed, so that 0.998 of the torque at rest are enough."""
+    coefficient, radii, dry = 0.322378, (7.518600e-6, 1.453094e-5), 4.082401e-17
+    scene = PAIR.replace(held_by_hubs(coefficient, radii, dry, 4.650566e-17, 0.151405))
+    early = gd.simulate(scene)
+    share = float(early.breakaway_torque) / friction.hub_starting_torque(
+        scene.geometry, dry, coefficient, radii
+    )
+    assert 0.9975 < share < 0.9985
+    at_slip = gd.simulate(scene.replace({"run.samples": 3}), t_end=float(early.start_time))
+    by_hub = coefficient * radii[1] * float(at_slip.gear_hub_load[-1])
+    assert float(at_slip.gear_contact_torque[-1]) - by_hub == pytest.approx(dry, rel=1e-6, abs=0)
 
 
 def test_the_end_of_a_standstill_does_not_depend_on_where_the_run_is_cut():
