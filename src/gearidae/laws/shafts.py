@@ -128,7 +128,7 @@ def driving_rate(m: Model, shaft: int, t: float, angle: float, speed: float, acc
     return _driving_rate(m, shaft, t, angle, speed, acceleration, 0.0)
 
 
-@compiled(inline=True)
+@compiled
 def is_constant(m: Model, shaft: int) -> bool:
     """Whether a shaft's driving torque never changes."""
     return bool(_constant(m, shaft, True))

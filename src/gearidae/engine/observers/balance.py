@@ -392,7 +392,7 @@ def _torque_slopes(m: Model, t: float, y: Floats) -> float:
     return total
 
 
-@compiled(inline=True)
+@compiled
 def _pinion(m: Model, y: Floats, yp: Floats) -> tuple[float, float, float]:
     """Travel of the pinion's base circle, its rate and the rate of that."""
     speed, e = speed_and_error(m, y)
@@ -400,21 +400,13 @@ def _pinion(m: Model, y: Floats, yp: Floats) -> tuple[float, float, float]:
     return travel, speed, pinion_acceleration(e, speed, y[W], yp[V], yp[W])
 
 
-@compiled(inline=True)
+@compiled
 def _torque(
     m: Model, shaft: int, t: float, y: Floats, speed: float, acceleration: float
 ) -> tuple[float, float]:
     """A torque over its base radius, and its rate along the motion of its shaft."""
     if is_constant(m, shaft):
         return m.scene.torque[shaft].constant, 0.0
-    return _changing_torque(m, shaft, t, y, speed, acceleration)
-
-
-@compiled
-def _changing_torque(
-    m: Model, shaft: int, t: float, y: Floats, speed: float, acceleration: float
-) -> tuple[float, float]:
-    """`_torque` where it changes."""
     angle = torque_angle(m, shaft, y[U], y[PHASE])
     then, angle, speed = last_on_its_side(m, shaft, t, angle, speed, acceleration)
     rate = driving_rate(m, shaft, then, angle, speed, acceleration)
