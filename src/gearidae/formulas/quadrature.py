@@ -35,7 +35,7 @@ def torque_work(h: float, travel: float, force: Ends, speed: Ends) -> tuple[floa
     )
 
 
-@compiled(inline=True)
+@compiled
 def error_estimate(h: float, f0: float, f1: float, rate0: float, rate1: float) -> float:
     """By how much the corrected trapezoidal rule may be out: its correction, times the share that this has in it."""
     corrected = abs(correction(h, rate0, rate1))
@@ -44,25 +44,25 @@ def error_estimate(h: float, f0: float, f1: float, rate0: float, rate1: float) -
     return corrected * corrected / (corrected + 0.5 * h * (abs(f0) + abs(f1)))
 
 
-@compiled(inline=True)
+@compiled
 def integral(h: float, f0: float, f1: float, rate0: float, rate1: float) -> float:
     """Corrected trapezoidal rule: exact for cubics."""
     return 0.5 * h * (f0 + f1) + correction(h, rate0, rate1)
 
 
-@compiled(inline=True)
+@compiled
 def correction(h: float, rate0: float, rate1: float) -> float:
     """What the rates correct the trapezoidal rule by."""
     return h * h / 12.0 * (rate0 - rate1)
 
 
-@compiled(inline=True)
+@compiled
 def integral_with_middle(h: float, f0: float, middle: float, f1: float, rate0: float, rate1: float) -> float:
     """Corrected trapezoidal rule, extrapolated with the value in the middle: exact for quintics."""
     return h * (7.0 * (f0 + f1) + 16.0 * middle) / 30.0 + 0.2 * correction(h, rate0, rate1)
 
 
-@compiled(inline=True)
+@compiled
 def middle_deviation(h: float, deviation: Ends) -> float:
     """Deviation from the mean in the middle of an interval: the one with which `integral_with_middle` gives zero."""
     rates = deviation.start_rate - deviation.end_rate
@@ -104,7 +104,7 @@ def integral_of_square(h: float, travel: float, speed: Ends) -> tuple[float, flo
     return mean * travel + rest, error_of_square(h, rate0, rate1)
 
 
-@compiled(inline=True)
+@compiled
 def error_of_square(h: float, rate0: float, rate1: float) -> float:
     r"""By how much `integral_with_middle` may be out for the square of a quantity x that vibrates.
 

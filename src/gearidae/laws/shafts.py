@@ -129,27 +129,19 @@ def driving_rate(m: Model, shaft: int, t: float, angle: float, speed: float, acc
     return _driving_rate(m, shaft, t, angle, speed, acceleration, 0.0)
 
 
-@compiled(inline=True)
+@compiled
 def is_constant(m: Model, shaft: int) -> bool:
     """Whether a shaft's driving torque never changes."""
     return bool(_constant(m, shaft, True))
 
 
-@compiled(inline=True)
+@compiled
 def driving_along(
     m: Model, shaft: int, t: float, angle: float, speed: float, acceleration: float
 ) -> tuple[float, float]:
     """`driving_force`, and its rate along the motion; where a law of a user jumps, both of the side before."""
     if is_constant(m, shaft):
         return m.scene.torque[shaft].constant, 0.0
-    return _changing_along(m, shaft, t, angle, speed, acceleration)
-
-
-@compiled
-def _changing_along(
-    m: Model, shaft: int, t: float, angle: float, speed: float, acceleration: float
-) -> tuple[float, float]:
-    """`driving_along` where it changes."""
     then, angle, speed = last_on_its_side(m, shaft, t, angle, speed, acceleration)
     rate = driving_rate(m, shaft, then, angle, speed, acceleration)
     return driving_force(m, shaft, then, angle, speed) + (t - then) * rate, rate

@@ -82,7 +82,7 @@ def farthest_joined(middle: float, offset: float) -> float:
     return math.hypot(max(middle + offset, 0.0), _NOTHING) - offset
 
 
-@compiled(inline=True)
+@compiled
 def middle_gap(m: Model, k: int, y: Floats, gap: float) -> float:
     """Gap in the middle of a contact: the pair's own, opened by the deflection of an elastic one."""
     return gap if m.scene.nodes == 0 else gap + y[first_unknown(m, k)]

@@ -25,7 +25,7 @@ _FULL_STRETCH: Final = float(EventKind.FULL_STRETCH)
 _FLANK_CHANGE: Final = float(EventKind.FLANK_CHANGE)
 
 
-@compiled(inline=True)
+@compiled
 def pair_guard(m: Model, k: int, gap: float, rate: float, middle: float) -> float:
     """Least of one pair's guards; asperities stretch with the gap in the middle, which deflection has its part in."""
     h = m.state.history[k]

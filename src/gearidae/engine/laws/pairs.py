@@ -117,7 +117,7 @@ def force_of_pair(m: Model, t: float, y: Floats, pair: PairState, settling: bool
     return _force(m, t, y, pair, settling, _NOTHING)
 
 
-@compiled(inline=True)
+@compiled
 def joining_losses(m: Model, k: int, y: Floats, gap: float) -> tuple[Shares, Shares]:
     """What each material of a pair has lost per length by joining since the last turning point, and slopes in the gap.
 

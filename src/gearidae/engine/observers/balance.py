@@ -381,7 +381,7 @@ def _torque_slopes(m: Model, t: float, y: Floats) -> float:
     return total
 
 
-@compiled(inline=True)
+@compiled
 def _pinion(m: Model, y: Floats, yp: Floats) -> tuple[float, float, float]:
     """Travel of the pinion's base circle, its rate and the rate of that."""
     speed, e = speed_and_error(m, y)

@@ -19,7 +19,7 @@ SHORTEST_SQ = 1e-12
 """Least square of a contact length: a step that is tried may lead beyond the path, to where there is none."""
 
 
-@compiled(inline=True)
+@compiled
 def length_and_rates(
     m: Model, flank: int, pair: int, phase: float, w: float, w_rate: float
 ) -> tuple[float, float, float]:

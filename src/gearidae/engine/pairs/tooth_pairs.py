@@ -116,7 +116,7 @@ def flank_of_history(m: Model, k: int) -> int:
     return COAST if k >= m.scene.slots else DRIVE
 
 
-@compiled(inline=True)
+@compiled
 def pairs_on_path(m: Model, flank: int) -> tuple[int, int]:
     """First and last number of a flank's pairs on the path of contact.
 
@@ -127,7 +127,7 @@ def pairs_on_path(m: Model, flank: int) -> tuple[int, int]:
     return math.ceil(lowest), math.floor(lowest + m.scene.contact_ratio)
 
 
-@compiled(inline=True)
+@compiled
 def is_on_path(m: Model, flank: int, pair: int) -> bool:
     """Whether a pair is one of `pairs_on_path`."""
     first, last = pairs_on_path(m, flank)
@@ -185,7 +185,7 @@ def pair_state(m: Model, flank: int, number: int, y: Floats) -> PairState:
     return PairState(flank, number, k, known, gap, rate, slope, inside, position_rate, moves)
 
 
-@compiled(inline=True)
+@compiled
 def pair_gap(
     m: Model, flank: int, pair: int, u: float, v: float, phase: float, w: float
 ) -> tuple[float, float, float, float]:
@@ -238,14 +238,14 @@ def pitch_error(m: Model, flank: int, pair: int) -> float:
     return kept.value
 
 
-@compiled(inline=True)
+@compiled
 def path_gap(m: Model, flank: int, pair: int, y: Floats) -> float:
     """Gap of a pair on the path of contact."""
     gap = m.scene.clearance[flank] + (y[U] if flank else -y[U])
     return gap + pitch_error(m, flank, pair) if m.scene.pitch_errors != 0 else gap
 
 
-@compiled(inline=True)
+@compiled
 def gap_and_rate(m: Model, flank: int, pair: int, y: Floats) -> tuple[float, float]:
     """Gap and gap rate of a pair."""
     gap, rate, _, _ = pair_gap(m, flank, pair, y[U], y[V], y[PHASE], y[W])
@@ -331,13 +331,13 @@ def rigid_separation(m: Model, u: float, phase: float) -> float:
     return least
 
 
-@compiled(inline=True)
+@compiled
 def nearest_gap(m: Model, flank: int, y: Floats) -> float:
     """Gap on the path of contact of the teeth that stand out farthest, which no pair of this flank undercuts."""
     return m.scene.nearest[flank] + (y[U] if flank else -y[U])
 
 
-@compiled(inline=True)
+@compiled
 def in_flight(m: Model) -> bool:
     """Whether both flanks are too far away for any pair to touch."""
     return bool(m.state.flank_in_reach[DRIVE] == 0 and m.state.flank_in_reach[COAST] == 0)

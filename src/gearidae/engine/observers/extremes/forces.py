@@ -187,7 +187,7 @@ def _note_force(m: Model, t: float, force: float) -> None:
             note_since(m, flank, force)
 
 
-@compiled(inline=True)
+@compiled
 def note_since(m: Model, flank: int, force: float) -> None:
     """Note a force since the last mesh exit of a flank; one that is out of reach has none."""
     p = m.state.passage[flank]
