@@ -200,7 +200,10 @@ def settle_sliding(m: Model, t: float, y: Floats, fresh: bool) -> bool:
         return jumped
     if has_hubs(m) and solve_shafts(m, t, y, surface_speed, pinion, gear).corner <= 0.0:
         state.load_sign = -state.load_sign
-        jumped = True
+        # Beside zero the load is smooth, and the step has seen it so: a restart there would cost ten short steps, and
+        # gain nothing. How long a step may be there is for `gearidae.engine.integrate.step_control`.
+        jumped |= m.work.friction.continued != 0
+        m.work.friction.continued = 0
     if kind == FREE and state.hold != FREE:
         if solve_shafts(m, t, y, surface_speed, pinion, gear).margin >= -1.5 * NO_FORCE:
             return jumped

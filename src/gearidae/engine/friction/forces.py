@@ -36,6 +36,8 @@ from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.pairs.tooth_pairs import flank_of_history, pair_gap
 from gearidae.laws.shafts import acting, driving_force
 
+SEEN: Final = 0.1
+"""Of a tolerance of the speeds: a passage of the load beside zero that changes them by less bounds no step."""
 RETURN: Final = 0.05
 """Rate at which the sliding that errors have brought about in a pair that rolls is taken out again, over 1/tau."""
 NO_FORCE: Final = 1e-12
@@ -269,6 +271,51 @@ def rubbed_accelerations(
     set_limits(m, t, y[W])
     shafts = solve_shafts(m, t, y, surface_speed, pinion, with_acting(m, t, y, gear))
     return shafts.pinion, shafts.gear
+
+
+@compiled_once(FRICTION)
+def load_pace(m: Model, speed_weight: float) -> float:
+    """Rate at which the load of the hubs changes, over that load, where it passes beside zero; 0 elsewhere.
+
+    Where the forces of two pairs, or of two materials, turn round one by one, their vector sum S passes zero at the
+    distance ``d = |S x S'| / |S'|``. Its modulus then turns within the time d / |S'|, which a step of high order passes
+    over without a large estimate of its error; and it is as wrong at each passage, since the modulus is missed where
+    it is least. A sum on a line through zero has d = 0: there the load goes on below zero, see `turning_loads`.
+
+    Parameters
+    ----------
+    speed_weight : float
+        One over the tolerance of the speeds.
+    """
+    friction = m.scene.friction
+    if m.state.hold == AT_REST or m.state.hold == HELD_PAIR:
+        return 0.0
+    drive = coast = drive_friction = coast_friction = 0.0
+    drive_rate = coast_rate = drive_friction_rate = coast_friction_rate = 0.0
+    for i in range(m.work.pair_forces.count):
+        noted = m.work.pair_forces.pair[i]
+        slip = direction(m, noted) if friction.flanks != 0 else 0.0
+        if flank_of_history(m, noted.history) == COAST:
+            coast += noted.force
+            coast_rate += noted.force_rate
+            coast_friction += slip * noted.limit
+            coast_friction_rate += slip * noted.limit_rate
+        else:
+            drive += noted.force
+            drive_rate += noted.force_rate
+            drive_friction += slip * noted.limit
+            drive_friction_rate += slip * noted.limit_rate
+    x, z = vector_sum(m, Mesh(drive, coast, drive_friction, coast_friction))
+    x_rate, z_rate = vector_sum(m, Mesh(drive_rate, coast_rate, drive_friction_rate, coast_friction_rate))
+    load, rate = math.hypot(x, z), math.hypot(x_rate, z_rate)
+    if load == 0.0 or rate == 0.0:
+        return 0.0
+    beside = abs(x * z_rate - z * x_rate) / rate
+    on_pinion = m.scene.pinion_inverse_mass * friction.pinion_hub if friction.forced == 0 else 0.0
+    on_gear = m.scene.gear_inverse_mass * friction.gear_hub
+    if (on_pinion + on_gear) * beside * beside * speed_weight <= SEEN * rate:
+        return 0.0
+    return float(rate / load)
 
 
 class Slopes(NamedTuple):

@@ -101,8 +101,8 @@ def turning_loads(m: Model, mesh: Mesh, pin: tuple[float, float]) -> tuple[Loads
     """Loads of both hubs, and the force along the line of action of the flank that has more of it.
 
     Where the mesh forces turn round together, their sum keeps to a line through zero and its modulus has a corner
-    there: the load goes on below zero, from the direction ``load_sign`` on. Where they turn round one by one, the sum
-    passes beside zero. With the force of a pin the pinion's load has no corner.
+    there: the load goes on below zero, from the direction ``load_sign`` on, which ``continued`` notes. Where they turn
+    round one by one, the sum passes beside zero. With the force of a pin the pinion's load has no corner.
     """
     friction = m.scene.friction
     along, over = vector_sum(m, mesh)
@@ -116,6 +116,7 @@ def turning_loads(m: Model, mesh: Mesh, pin: tuple[float, float]) -> tuple[Loads
     turned = m.state.load_sign * along < 0.0 and abs(over) <= (2.0 * friction.even + _ROUNDING) * abs(along)
     if turned and has_hubs(m):
         load = -load
+        m.work.friction.continued = 1
     if pin[0] == 0.0 == pin[1]:
         pinion = load
     return Loads(pinion, load), along

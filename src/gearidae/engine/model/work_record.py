@@ -245,6 +245,7 @@ FRICTION_WORK: Final = record_type(  # friction
         (2,),
     ),  # vector sum of the mesh forces without friction, along and across the line of action [F]
     ("pin", REAL, (2,)),  # force of the pin in the same components [F]
+    ("continued", INT),  # 1 if a load of a hub has gone on below zero since the last passage of zero
     ("before_slip", REAL),  # the gear's direction of slip before the decisions of one time
     ("before_pair", INT, (2 * SLOTS_HIGH,)),  # pair of each history then
     ("before_slide", INT, (2 * SLOTS_HIGH,)),  # and its direction
