@@ -62,7 +62,7 @@ def follow(balance, exposures):
     wanted = SimpleNamespace(
         balance=balance, friction=balance, extremes=1, exposures=exposures, impacts=exposures
     )
-    m = SimpleNamespace(scene=SimpleNamespace(follow=wanted, kind=0))
+    m = SimpleNamespace(scene=SimpleNamespace(follow=wanted, kind=0, nodes=0))
     y, turned = np.zeros(max(V, W) + 1), SimpleNamespace(turns=True, flank=0, pair=0, k=0, gap=0.0)
     step.account.py_func(m, 1.0, y, y, (True, True), (y, y))
     step.account_event.py_func(m, 1.0, y, y, turned)

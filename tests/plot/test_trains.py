@@ -45,7 +45,6 @@ def test_every_picture_draws_a_train_or_says_why_not(run, name):
     "asked",
     [
         lambda run, path: gd.plot.animate_teeth(run, path / "teeth.gif"),
-        lambda run, path: gd.explore(run, path / "runs.html"),
         lambda run, path: gd.analysis.tooth_contacts(run, [1e-5]),
         lambda run, _: run.gearidae.impacts(),
         lambda run, _: run.gearidae.passages(),

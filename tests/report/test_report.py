@@ -377,6 +377,9 @@ def test_command(roller, tmp_path, monkeypatch, capfd):
     capfd.readouterr()
     assert main(["report", "r.nc"]) == 0
     assert capfd.readouterr().out == "Report: r.html\n"
+    assert main(["report", "r.nc"]) == 0  # a page of its own
+    (tmp_path / "r.html").write_text("mine")
+    capfd.readouterr()
     assert main(["report", "r.nc"]) == 2
     assert re.search(r"gearidae: report = r.html: exists already", capfd.readouterr().err)
     assert main(["report", "r.nc", "-o", "r.html", "--overwrite"]) == 0
