@@ -346,10 +346,13 @@ def fine():
 
 
 @pytest.mark.parametrize(
-    ("backend", "rtol", "error"), [("auto", 1e-5, 1e-4), ("auto", 1e-8, 1e-7), ("sksundae", 1e-8, 1e-5)]
+    ("backend", "rtol", "error"), [("auto", 1e-5, 1e-4), ("auto", 1e-8, 3e-7), ("sksundae", 1e-8, 1e-5)]
 )
 def test_coefficients_converge_with_the_tolerance(fine, backend, rtol, error):
-    """Both drivers; IDA's own formulas are less accurate at the same tolerance."""
+    """Both drivers; IDA's own formulas are less accurate at the same tolerance.
+
+    Processors round differently: at 1e-8 the error is 0.9e-7 on one and 1.15e-7 on another.
+    """
     got = solve(SLIPPING.replace({"run.rtol": rtol}), backend=backend).samples
     for name in ("pinion_hub_friction", "gear_hub_friction"):
         np.testing.assert_allclose(got[name], fine.samples[name], rtol=error, atol=0.0)

@@ -87,14 +87,15 @@ def test_against_integrals_of_a_densely_sampled_run(law, backend):
     """With one pair alone, the mesh force and the gap give each number, by the trapezoidal rule over 85 ps.
 
     Steps of the portable driver are shorter. What the force along the path takes does not show in the gap, and every
-    join and detachment of an asperity is a jump of the force, which a sample misses by up to its interval.
+    join and detachment of an asperity is a jump of the force, which a sample misses by up to its interval. Where the
+    samples lie on a contact depends on how the processor rounds: they miss up to 2e-5.
     """
     samples = 40_001 if backend == "native" else 10_001
     run = solve(RATTLE.replace(LAWS[law]), backend=backend, samples=samples)
     rows, time = run.impacts, run.time
     force, gap = run.samples["mesh_force"], run.samples["drive_gap"]
     discrete = law == "discrete asperities"
-    accuracy = 2e-3 if discrete else 1e-5 if backend == "native" else 1e-4
+    accuracy = 2e-3 if discrete else 5e-5 if backend == "native" else 1e-4
     assert len(rows) == (1 if discrete else 2)
     for i in range(len(rows)):
         inside = time[(time > rows.begin[i]) & (time < rows.time[i])]

@@ -214,16 +214,19 @@ def _changes_by_torques(scene, ds):
 
 
 def _continues(scene, looser, ds):
-    """Ringing multiplies what a restart changes: a thousandth of the swing, or twice what the tolerance changes.
+    """Ringing multiplies what a restart changes: a thousandth of the swing, or thrice what the tolerance changes.
 
-    Of gears that ring on single asperities both differences are draws from one spread, hence twice.
+    Of gears that ring on single asperities both differences are draws from one spread, of which a single time says
+    little: the largest in the last fifth of the run are compared.
     """
-    changes = {"run.duration": 0.5 * scene.run.duration, "run.samples": 3}
+    behind = (len(ds.time) - 1) // 2
+    changes = {"run.duration": 0.5 * scene.run.duration, "run.samples": behind + 1}
     half = gd.simulate(scene.replace(changes), rtol=1e-7)
     rest = gd.simulate(scene.replace(changes), rtol=1e-7, start=half)
-    last = float(ds.gear_speed[-1])
-    allowed = max(1e-3 * float(np.ptp(ds.gear_speed.values)), 2.0 * abs(last - float(looser.gear_speed[-1])))
-    assert abs(float(rest.gear_speed[-1]) - last) <= allowed, "a continued run is the whole"
+    late = slice(-(2 * behind) // 5, None)
+    whole, loose, continued = (run.gear_speed.values[late] for run in (ds, looser, rest))
+    allowed = max(1e-3 * np.ptp(ds.gear_speed.values), 3.0 * np.abs(loose - whole).max())
+    assert np.abs(continued - whole).max() <= allowed, "a continued run is the whole"
 
 
 @pytest.mark.parametrize("seed", range(FEW))
