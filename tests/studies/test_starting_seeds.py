@@ -61,7 +61,11 @@ def _largest_static_torque(scene, phase):
 
 
 def test_two_asperities_hold_a_gear_as_statics_says():
-    """Statics knows no ramp: 1 % is what the torque rises while the last barrier is passed."""
+    """Statics knows no ramp: 1 % is what the torque rises while the last barrier is passed.
+
+    From half of the torque on the ringing decides at what moment the gear comes to the barrier, and by that whether it
+    passes.
+    """
     scene, phase = _barrier(3)
     assert 0.1 < phase < 0.6
     at = starting_ramp.seated(scene, {"contact.seed": 3})
@@ -70,7 +74,7 @@ def test_two_asperities_hold_a_gear_as_statics_says():
     torque = float(starting_ramp.run_from_rest(starting_ramp.ramp(at, scale, 0), "auto")[1])
     assert torque == pytest.approx(wanted, rel=0.01, abs=0)
     assert scale == pytest.approx(wanted, rel=0.1, abs=0)
-    for share, turns in ((0.5, False), (1.2, True)):
+    for share, turns in ((0.3, False), (1.2, True)):
         word = starting_ramp.run_from_rest(starting_ramp.constant(at, scale, share * wanted), "auto")[1]
         assert (word != starting_ramp.RESTS) is turns
 
