@@ -185,9 +185,8 @@ PARTS = (
 @pytest.mark.parametrize("seed", [2, 6])
 @pytest.mark.parametrize("cuts", [(0.5, 1.0), (0.25, 0.6, 1.0)])
 def test_a_chain_has_the_words_and_standstills_of_the_whole_run(seed, cuts):
-    """Parts of the chain begin in earlier runs; 2e-2: the motion differs within its tolerance, times what it rings.
-
-    With the rounding of one processor by 4e-4, with that of another by 5e-3.
+    """Parts of the chain begin in earlier runs; 2e-2: the motion differs within its tolerance, times what it rings:
+    with the rounding of one processor by less than 1e-3, with that of another by 5e-3.
     """
     scene = drawn(seed).replace({"run.samples": "off"})
     whole, run, before = gd.simulate(scene), None, 0.0
