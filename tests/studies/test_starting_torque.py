@@ -173,7 +173,9 @@ def test_each_gear_of_a_design_has_a_starting_torque_of_its_own():
     assert found.seed.values.tolist() == [7, 8]
     torques = found.starting_torque.values[0]
     assert np.unique(torques).size == 2
-    assert float(found.quantiles.sel(quantile=0.5)[0]) == pytest.approx(np.median(torques), rel=1e-14, abs=0.0)
+    assert float(found.quantiles.sel(quantile=0.5)[0]) == pytest.approx(
+        np.median(torques), rel=1e-14, abs=0.0
+    )
     alone = starting_torque(TEETH.replace({"mesh.pitch_error_seed": 8}), "own", impacts=2, tolerance=0.5)
     # each search begins at the static torque, which is that of teeth without errors of all gears
     turns, sticks = float(alone.simulated_torque[0]), float(alone.simulated_stuck[0])

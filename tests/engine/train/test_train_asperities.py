@@ -149,7 +149,7 @@ def test_each_asperity_joins_and_lets_go_in_turn():
 def test_shorter_steps_find_the_same_events():
     """Of bare teeth without damping; steps are a tenth as long, which changes the motion by some tolerances.
 
-    Ringing multiplies the change: in twice the time by a decade, to 7e-11 s.
+    Ringing multiplies the change: in twice the time to 7e-11 s.
     """
     bare = {"coating.sam_fraction": 0.0, "mesh.damping": 0.0, "run.rtol": 1e-10}
     scene = discrete(chain(), **bare).replace({"run.duration": 7.5e-6, "run.samples": 2})

@@ -16,7 +16,7 @@ from gearidae.scene import Scene
 
 AGREE = 1e-4
 """Of the range of a sample, at a tolerance of 1e-8: teeth in contact multiply rounding, which other processors do
-otherwise, by up to 2e-5 in 20 us; real asperities by 1e-4 of a gap."""
+otherwise, by up to 2e-5 in 20 us, with real asperities by more."""
 SHORT = 4e-6
 """Duration [s] of runs by the other driver, whose steps take a hundred times as long."""
 EVERY = 12
