@@ -458,7 +458,8 @@ def test_a_gear_that_swings_in_a_well_never_sticks_and_stops_after_its_first_per
 def test_a_gear_that_turns_round_in_the_well_of_an_order_does_not_stick():
     """At 1 s it has moved by 7e-4 pitches in the 2 % of the run since its speed was zero, free gears by 1.8e-3.
 
-    Three exits lie behind it, which multiply rounding: it stops from 0.987 s on with one processor, with another between 1 and 1.01 s.
+    Three exits lie behind it, which multiply rounding: it stops from 0.987 s on with one processor, with another from
+    between 1 and 1.01 s on.
     """
     damped = {"drive.schedule": [], "load.torque": 0.0, "load.viscous": 1e-18, "coating.sam_fraction": 1.0}
     for end, allowed in ((0.95, ["irregular"]), (1.0, ["irregular", "stops"]), (1.03, ["stops"])):
