@@ -16,7 +16,7 @@ import pytest
 import xarray as xr
 
 import gearidae as gd
-from gearidae.archive import check_target, definition, save, target, to_dataset
+from gearidae.archive import check_target, definition, lock, save, target, to_dataset
 from gearidae.archive.journal import journal_of
 from gearidae.archive.lock import WriterLock, is_locked
 from gearidae.cli import main
@@ -135,7 +135,13 @@ def test_links_to_files_stay_links(product, single, tmp_path):
 # -- one writer at a time --------------------------------------------------------------------------------------------
 
 
-@pytest.mark.usefixtures("nothing_runs")
+@pytest.fixture
+def impatient(monkeypatch):
+    """Writers ask for a lock that is held for good, and wait for it no longer than to ask a few times."""
+    monkeypatch.setattr(lock, "_PATIENCE", 0.02)
+
+
+@pytest.mark.usefixtures("nothing_runs", "impatient")
 @pytest.mark.parametrize("product", EVERY)
 @pytest.mark.parametrize("there", [True, False])
 def test_what_another_writes_is_refused_before_anything_runs(product, there, single, tmp_path):
@@ -149,6 +155,7 @@ def test_what_another_writes_is_refused_before_anything_runs(product, there, sin
     assert [entry.read_bytes() for entry in tmp_path.iterdir()] == ([b"precious"] if there else [])
 
 
+@pytest.mark.usefixtures("impatient")
 @pytest.mark.parametrize("other", ["sweep", "ensemble", "simulate", "save"])
 def test_a_sweep_keeps_its_archive_and_the_journal_beside_it(other, single, tmp_path):
     """Others in another thread, as they may do it in another process."""

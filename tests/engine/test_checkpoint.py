@@ -180,8 +180,12 @@ def test_a_checkpoint_of_another_scene_is_refused(sound):
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_words_at_their_bounds_end_without_a_signal(name, sound, tmp_path):
-    """Bounds keep a checkpoint with a forged index, count or flag out, and what they let through harms nothing."""
+@pytest.mark.parametrize("every", [3, pytest.param(1, marks=pytest.mark.by_hand)])
+def test_words_at_their_bounds_end_without_a_signal(every, name, sound, tmp_path):
+    """Bounds keep a checkpoint with a forged index, count or flag out, and what they let through harms nothing.
+
+    One in three of these runs on, all of them by hand.
+    """
     let_through, whole_numbers = [], 0
     for word, value, within in at_the_bounds(name, sound[name]):
         copy = forged(sound[name], word, value)
@@ -192,7 +196,7 @@ def test_words_at_their_bounds_end_without_a_signal(name, sound, tmp_path):
             let_through.append((word, copy))
     assert whole_numbers >= 100
     assert len(let_through) >= 200
-    run_on(name, let_through, tmp_path)
+    run_on(name, let_through[::every], tmp_path)
 
 
 def run_on(name, let_through, tmp_path):

@@ -1,4 +1,4 @@
-"""A hundred random scenes: a named ending for each, and no sample that the physics does not allow."""
+"""Sixty random scenes: a named ending for each, and no sample that the physics does not allow."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from reference.random_scenes import SCENES_PER_SURFACE, random_scene, wide_scene
 
 FEW = 500  # steps: the first block of output has more; with elastic bodies, a hundredth of it
 NAMED = {ending.status for ending in Ending} | {"budget", "refused"}
-SCENES, SEED = (100, pytest.param(300, marks=pytest.mark.by_hand)), 4
-PORTABLE_EVERY = 25
+SCENES, SEED = (60, pytest.param(300, marks=pytest.mark.by_hand)), 4
+PORTABLE_EVERY = 20
 """One scene of so many runs with the portable driver, whose steps take a hundred times as long."""
 
 

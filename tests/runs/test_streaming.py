@@ -21,7 +21,7 @@ import pytest
 import xarray as xr
 
 import gearidae as gd
-from gearidae.archive import definition, journal, netcdf, unfinished
+from gearidae.archive import definition, journal, lock, netcdf, unfinished
 from gearidae.archive.journal import journal_of
 from gearidae.cli import main
 from gearidae.engine import native, portable
@@ -242,6 +242,7 @@ def test_readable_at_any_time_while_the_run_goes_on(path, monkeypatch):
 def test_a_run_may_look_at_its_own_archive_and_nobody_else_may_write_it(path, monkeypatch):
     monkeypatch.setattr(native, "BLOCK_STEPS", 50)
     monkeypatch.setattr(native, "FIRST_STEPS", 50)
+    monkeypatch.setattr(lock, "_PATIENCE", 0.02)  # the lock is held for good
     looked = []
 
     def look(reached, events):
