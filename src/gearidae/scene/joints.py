@@ -9,6 +9,9 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Protocol
 
 from gearidae.errors import SceneError
+from gearidae.laws.joint_law import JointLaw
+from gearidae.laws.shaft.hub import HUB
+from gearidae.laws.shaft.pin import PIN
 from gearidae.records.standing import Holding
 from gearidae.torques import torque_law
 
@@ -52,6 +55,11 @@ class Joint:
     adhesion: float = 0.0
     axial_load: float = 0.0
     dimple_radius: float = 0.0
+
+    @property
+    def law(self) -> JointLaw:
+        """Kind of the joint."""
+        return PIN if self.name == PIN.name else HUB
 
     @property
     def arm(self) -> float:
@@ -105,9 +113,9 @@ class Joint:
         """What of the joint may hold a gear."""
         holding = Holding(0)
         if self.largest * self.radius > 0.0:
-            holding |= Holding.PIN_FRICTION if self.name == "pin" else Holding.HUB_FRICTION
+            holding |= self.law.holders[0].number
         if self.largest * self.dimple_radius * self.axial_load > 0.0:
-            holding |= Holding.AXIAL_LOAD
+            holding |= HUB.holders[1].number
         return holding
 
 
@@ -201,6 +209,11 @@ _HUB_KEYS = {
 def ages(scene: Scene) -> bool:
     """Whether friction of a joint of a scene grows with the time at rest."""
     return any(joint.rise > 0.0 for joint in joints(scene))
+
+
+def has_joint(scene: Scene, law: JointLaw) -> bool:
+    """Whether a joint of a kind has friction in a scene."""
+    return any(joint.coefficient > 0.0 and joint.law is law for joint in joints(scene))
 
 
 def has_joint_friction(scene: Scene) -> bool:
