@@ -348,7 +348,7 @@ def test_a_train_that_begins_to_move_agrees_with_its_directions_of_slip(with_joi
         assert int(m.state.reversals) < 100
         size = abs(pinion) + abs(gear)
         assert m.state.slip * gear >= -1e-9 * size
-        if int(m.scene.friction.pinion_rubs) != 0:
+        if int(m.scene.friction.rubs[DRIVE]) != 0:
             assert m.state.pinion_slip * pinion >= -1e-9 * size
         friction = m.scene.friction
         for contact in m.work.pair_forces.pair[: m.work.pair_forces.count]:

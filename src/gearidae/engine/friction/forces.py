@@ -47,9 +47,9 @@ NO_FORCE: Final = 1e-12
 
 
 @compiled(inline=True)
-def has_gear_element(m: Model) -> bool:
-    """Whether a law of its shaft or a joint may hold the gear."""
-    return bool(resists(m, LOAD) or m.scene.friction.gear_rubs != 0)
+def has_element(m: Model, shaft: int) -> bool:
+    """Whether a law of a shaft or a joint may hold it."""
+    return bool(resists(m, shaft) or m.scene.friction.rubs[shaft] != 0)
 
 
 @compiled(inline=True)
@@ -199,9 +199,8 @@ def solve_shafts(m: Model, t: float, y: Floats, surface_speed: float, pinion: fl
     first_limit = shaft_limit(m, DRIVE, t, y, surface_speed, joints, pin)
     second_limit = shaft_limit(m, LOAD, t, y, y[W], joints, pin)
     on_pinion = pairs.pinion - state.pinion_slip * first_limit
-    on_gear = pairs.gear - _gear_slip(m) * second_limit
-    hub_on_pinion = state.pinion_slip * joints[DRIVE].by_load
-    hub_on_gear = _gear_slip(m) * joints[LOAD].by_load
+    on_gear = pairs.gear - state.slip * second_limit
+    hub_on_pinion, hub_on_gear = state.pinion_slip * joints[DRIVE].by_load, state.slip * joints[LOAD].by_load
     held, margin = 0.0, math.inf
     if state.hold == HELD_PAIR:
         first, second = a1 * pairs.first, a2 * pairs.second
@@ -252,12 +251,6 @@ def _with_held(
     else:
         drive_friction += held
     return Mesh(drive, coast, drive_friction, coast_friction), solved.near, held, solved.room
-
-
-@compiled(inline=True)
-def _gear_slip(m: Model) -> float:
-    """Direction in which the gear slips, 0 without anything that might hold it."""
-    return m.state.slip if has_gear_element(m) else 0.0
 
 
 @compiled(inline=True)

@@ -16,7 +16,7 @@ from typing import NamedTuple
 from gearidae.compiled import compiled
 from gearidae.engine.friction.ageing import joint_friction
 from gearidae.engine.friction.equilibrium import equilibrium_margin
-from gearidae.engine.friction.forces import has_gear_element, shaft_limit
+from gearidae.engine.friction.forces import has_element, shaft_limit
 from gearidae.engine.friction.hubs import (
     Loads,
     Mesh,
@@ -54,16 +54,15 @@ def list_elements(m: Model, t: float, y: Floats) -> None:
     work.load[0], work.load[1] = vector_sum(m, Mesh(drive, coast, 0.0, 0.0))
     pin, joints = pin_force(m, t, y, 0.0), joint_friction(m, t, y)
     work.pin[0], work.pin[1] = pin
-    if has_gear_element(m):
-        limit = shaft_limit(m, LOAD, t, y, y[W], joints, pin)
-        _set(work.element[count], 0.0, 1.0, limit, HELD_GEAR)
-        work.element[count].by_load = joints[LOAD].by_load
-        count += 1
-    if friction.pinion_rubs != 0:
-        limit = shaft_limit(m, DRIVE, t, y, 0.0, joints, pin)
-        _set(work.element[count], 1.0, 0.0, limit, HELD_PINION)
-        work.element[count].by_load = joints[DRIVE].by_load
-        count += 1
+    for shaft in (LOAD, DRIVE):
+        if has_element(m, shaft):
+            limit = shaft_limit(m, shaft, t, y, y[W] if shaft == LOAD else 0.0, joints, pin)
+            if shaft == LOAD:
+                _set(work.element[count], 0.0, 1.0, limit, HELD_GEAR)
+            else:
+                _set(work.element[count], 1.0, 0.0, limit, HELD_PINION)
+            work.element[count].by_load = joints[shaft].by_load
+            count += 1
     work.count = count
 
 

@@ -89,8 +89,7 @@ FRICTION: Final = record_type(  # of flanks and joints: hubs and the pin of a dr
     ("joints", INT),  # 1 if a joint has a radius, so that loads are followed
     ("hubs", INT),  # 1 if a hub has friction that grows with its load
     ("ages", INT),  # 1 if friction of a joint grows with the time at rest
-    ("pinion_rubs", INT),  # 1 if a joint or a law of the pinion has friction
-    ("gear_rubs", INT),  # 1 if a joint of the gear has
+    ("rubs", INT, (2,)),  # 1 if a joint of the shaft has friction
     ("forced", INT),  # 1 if the drive pushes with a pin
     ("holding", INT),  # kinds of dry friction: a sum of values of `gearidae.records.standing.Holding`
     ("even", REAL),  # coefficient of all materials; 0 where they differ, or the law is another [1]

@@ -38,8 +38,8 @@ def add_friction(s: Record, scene: GearScene) -> None:
         for holder in (holder for law in laws for holder in law.holders):
             friction.holding |= holder.number
     # a gear that is held by its own laws alone has a short way, through the motion and at events
-    friction.pinion_rubs = int(s.torque[DRIVE].resists != 0)
-    friction.any_friction = int(friction.joints != 0 or friction.flanks != 0 or friction.pinion_rubs != 0)
+    resists = s.torque[DRIVE].resists != 0
+    friction.any_friction = int(friction.joints != 0 or friction.flanks != 0 or resists)
     friction.may_stick = int(friction.any_friction != 0 or s.torque[LOAD].resists != 0)
     friction.holding |= Holding.FLANK_FRICTION if friction.flanks != 0 else 0
     s.noting = int(scene.run.exposures > 0 or friction.any_friction != 0)
@@ -81,7 +81,7 @@ def _add_joints(s: Record, scene: GearScene, geometry: Geometry) -> None:
         friction.holding |= int(joint.holding)
         rubs = int(joint.largest > 0.0)
         friction.hubs |= int(number != PIN and rubs != 0 and joint.radius > 0.0)
-        friction["gear_rubs" if shaft == LOAD else "pinion_rubs"] |= rubs
+        friction.rubs[shaft] |= rubs
     if friction.joints != 0 and has_pin(scene):
         angle = geometry.pressure_angle + scene.drive.orientation
         friction.forced, friction.pin_cosine, friction.pin_sine = (
