@@ -17,14 +17,12 @@ from gearidae.archive.variables import EVENTS, SAMPLES
 from gearidae.records import (
     ELASTIC_COLUMNS,
     GEAR_COLUMNS,
-    HUB_COLUMNS,
-    PIN_COLUMNS,
     POPULATION_COLUMNS,
     ROLLER_COLUMNS,
     EventKind,
     Statistics,
 )
-from gearidae.records.columns import HUB_FRICTION_COLUMNS, LAW_SAMPLES, PIN_FRICTION_COLUMNS
+from gearidae.records.columns import JOINT_FRICTION_COLUMNS, JOINT_LOAD_COLUMNS, LAW_SAMPLES
 from gearidae.records.energy import TERMS
 from gearidae.runs.running import unsolved
 
@@ -76,8 +74,8 @@ def layout_of(ds: xr.Dataset) -> dict[str, tuple[str, str]]:
 
 def test_catalogue_knows_every_column_of_the_engine():
     columns = (
-        *(GEAR_COLUMNS, ROLLER_COLUMNS, ELASTIC_COLUMNS, POPULATION_COLUMNS, HUB_COLUMNS, PIN_COLUMNS),
-        *(HUB_FRICTION_COLUMNS, PIN_FRICTION_COLUMNS, [column.name for column in LAW_SAMPLES]),
+        *(GEAR_COLUMNS, ROLLER_COLUMNS, ELASTIC_COLUMNS, POPULATION_COLUMNS),
+        *(JOINT_LOAD_COLUMNS, JOINT_FRICTION_COLUMNS, [column.name for column in LAW_SAMPLES]),
     )
     assert set(SAMPLES) == {name for names in columns for name in names}
 

@@ -15,11 +15,12 @@ import gearidae as gd
 from gearidae.archive import unfinished
 from gearidae.engine.backend import solve
 from gearidae.engine.events.sliding import rest_reserve
-from gearidae.engine.friction.ageing import begin_ageing, later_age
+from gearidae.engine.friction.ageing import begin_ageing
 from gearidae.engine.integrate.start import set_rates
 from gearidae.engine.motion.pair_forces import forces_at
 from gearidae.engine.observers.friction_losses import note_friction
 from gearidae.engine.setup.build import make_problem
+from gearidae.laws.joint_law import later_age
 from gearidae.scene.joints import joints
 
 CASE = gd.load_case(Path(__file__).parents[2] / "cases" / "microengine.toml")

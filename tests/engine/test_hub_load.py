@@ -14,11 +14,12 @@ from gearidae.engine.friction.hubs import Mesh, consistent_loads, pin_force, vec
 from gearidae.engine.friction.pairs import levers
 from gearidae.engine.integrate.start import set_rates
 from gearidae.engine.model.record_types import AT_REST, HELD_PAIR, STUCK
-from gearidae.engine.model.state import COAST, V, W
+from gearidae.engine.model.state import COAST, DRIVE, LOAD, V, W
 from gearidae.engine.motion.shafts import forces_at_shafts
 from gearidae.engine.observers.friction_losses import note_friction
 from gearidae.engine.pairs.tooth_pairs import flank_of_history
 from gearidae.engine.setup.build import make_problem
+from gearidae.laws.joints import PIN
 from gearidae.records import EventKind
 from gearidae.scene import preset
 from gearidae.torques import register_torque, unregister_torque
@@ -240,12 +241,12 @@ def largest_push(m, y, rng):
     _, _, gear = forces_at_shafts(m, 0.0, y)
     friction, notes = m.scene.friction, m.work.pair_forces.pair[: m.work.pair_forces.count]
     dry, h1, h2 = (
-        float(m.scene.torque[1].constant + friction.gear_constant),
-        float(friction.pinion_hub),
-        float(friction.gear_hub),
+        float(m.scene.torque[1].constant + friction.joint[LOAD].constant),
+        float(friction.joint[DRIVE].by_load),
+        float(friction.joint[LOAD].by_load),
     )
     pin = np.array(pin_force(m, 0.0, y, 0.0))
-    held = float(friction.pinion_constant + friction.pin * np.hypot(*pin))
+    held = float(friction.joint[DRIVE].constant + friction.joint[PIN].by_load * np.hypot(*pin))
     levers, limits, axes, total = [], [], [], np.zeros(2)
     for contact in notes:
         coast = flank_of_history(m, int(contact["history"])) == COAST
@@ -347,7 +348,7 @@ def test_a_train_that_begins_to_move_agrees_with_its_directions_of_slip(with_joi
         assert int(m.state.reversals) < 100
         size = abs(pinion) + abs(gear)
         assert m.state.slip * gear >= -1e-9 * size
-        if int(m.scene.friction.pinion_rubs) != 0:
+        if int(m.scene.friction.rubs[DRIVE]) != 0:
             assert m.state.pinion_slip * pinion >= -1e-9 * size
         friction = m.scene.friction
         for contact in m.work.pair_forces.pair[: m.work.pair_forces.count]:

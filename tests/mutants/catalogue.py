@@ -614,8 +614,8 @@ MUTANTS = (
     Mutant(
         "a gear that holds with the friction of its hub alone, without the dry load",
         "engine/friction/forces.py",
-        "margin = second_limit + joints.gear_hub * loads.gear - abs(pairs.gear)",
-        "margin = joints.gear_hub * loads.gear - abs(pairs.gear)",
+        "margin = second_limit + joints[LOAD].by_load * loads.gear - abs(pairs.gear)",
+        "margin = joints[LOAD].by_load * loads.gear - abs(pairs.gear)",
         ("engine/test_stick_slip.py", "engine/test_friction.py", "engine/test_hub_load.py"),
     ),
     Mutant(
@@ -627,16 +627,16 @@ MUTANTS = (
     ),
     Mutant(
         "contacts that age at rest and forget nothing in sliding",
-        "engine/friction/ageing.py",
+        "laws/joint_law.py",
         "left = math.exp((begin - end) * forgetting)",
         "left = 1.0",
         ("engine/test_ageing.py",),
     ),
     Mutant(
-        "losses in the hub of the pinion without the change of its coefficient",
+        "losses in the joints without the change of their coefficients",
         "engine/observers/friction_losses.py",
-        "pinion_rate = rate.pinion_hub * shafts.loads.pinion + rate.pinion_constant",
-        "pinion_rate = rate.pinion_constant",
+        "(rate.by_load * load + rate.constant)",
+        "rate.constant",
         ("engine/test_ageing.py::test_rates_of_the_powers_of_joints_that_age_are_those_along_the_motion",),
     ),
 )

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import Final, NamedTuple
 
+from gearidae.laws.joints import JOINTS
 from gearidae.laws.law import SHAFT_NAMES
 from gearidae.laws.shafts import SAMPLED
 from gearidae.records.row_table import indices_of
@@ -89,31 +90,18 @@ POPULATION_SAMPLES: Final = (
 ELASTIC_SAMPLES: Final = (
     Column("min_separation", "m", "smallest distance of the flanks, deflection included"),
 )
-
-HUB_SAMPLES: Final = (
-    Column(
-        "pinion_hub_load",
-        "N",
-        "load of the pinion's hub",
-        "size of the vector sum of the force of a pin and the mesh forces; of gears at rest without flank friction",
-        "0.3",
-    ),
-    Column(
-        "gear_hub_load",
-        "N",
-        "load of the gear's hub",
-        "size of the vector sum of the mesh forces; of gears at rest without flank friction",
-        "0.3",
-    ),
+JOINT_LOADS: Final = tuple(
+    Column(f"{joint.prefix}_load", "N", f"load of {joint.sampled}", joint.load, "0.3") for joint in JOINTS
 )
-PIN_SAMPLES: Final = (
+JOINT_FRICTION: Final = tuple(
     Column(
-        "pin_load",
-        "N",
-        "load of the pin that drives the pinion",
-        "size of the force of the torque law",
+        f"{joint.prefix}_friction",
+        "1",
+        f"coefficient of friction of {joint.sampled}",
+        "of the instant: it grows with the time at rest, and sliding forgets that",
         "0.3",
-    ),
+    )
+    for joint in JOINTS
 )
 LAW_SAMPLES: Final = tuple(
     Column(
@@ -128,27 +116,14 @@ LAW_SAMPLES: Final = tuple(
     if law.sample is not None
 )
 
-_OF_INSTANT: Final = "of the instant: it grows with the time at rest, and sliding forgets that"
-HUB_FRICTION_SAMPLES: Final = (
-    Column("pinion_hub_friction", "1", "coefficient of friction of the pinion's hub", _OF_INSTANT, "0.3"),
-    Column("gear_hub_friction", "1", "coefficient of friction of the gear's hub", _OF_INSTANT, "0.3"),
-)
-PIN_FRICTION_SAMPLES: Final = (
-    Column(
-        "pin_friction", "1", "coefficient of friction of the pin that drives the pinion", _OF_INSTANT, "0.3"
-    ),
-)
-
 GEAR_COLUMNS = tuple(column.name for column in GEAR_SAMPLES)
 ROLLER_COLUMNS = tuple(column.name for column in ROLLER_SAMPLES)
 ELASTIC_COLUMNS = tuple(column.name for column in ELASTIC_SAMPLES)
 POPULATION_COLUMNS = tuple(column.name for column in POPULATION_SAMPLES)
-HUB_COLUMNS = tuple(column.name for column in HUB_SAMPLES)
-PIN_COLUMNS = tuple(column.name for column in PIN_SAMPLES)
-HUB_FRICTION_COLUMNS = tuple(column.name for column in HUB_FRICTION_SAMPLES)
-PIN_FRICTION_COLUMNS = tuple(column.name for column in PIN_FRICTION_SAMPLES)
-"""Additional columns of elastic contacts, of populations, of hubs and of a pin, after the others; those of laws of the
-shafts follow them."""
+JOINT_LOAD_COLUMNS = tuple(column.name for column in JOINT_LOADS)
+JOINT_FRICTION_COLUMNS = tuple(column.name for column in JOINT_FRICTION)
+"""Additional columns of elastic contacts, of populations and of joints, after the others; those of laws of the shafts
+follow them."""
 
 
 GEAR: Final = indices_of(*GEAR_COLUMNS, *ELASTIC_COLUMNS)
@@ -163,15 +138,12 @@ def sampled_columns(
     roller: bool,
     bodies: str = "rigid",
     roughness: str = "statistical",
-    hubs: bool = False,
-    pin: bool = False,
+    joints: int = 0,
     ages: bool = False,
 ) -> tuple[str, ...]:
-    """Names of what is sampled of gears or a roller, by ``contact.bodies``, ``contact.roughness`` and joints."""
+    """Names of what is sampled of gears or a roller, by bodies, roughness and how many joints."""
     more = ELASTIC_COLUMNS if bodies == "elastic" else ()
     more += POPULATION_COLUMNS if roughness == "discrete" else ()
-    more += HUB_COLUMNS if hubs else ()
-    more += PIN_COLUMNS if pin else ()
-    more += HUB_FRICTION_COLUMNS if hubs and ages else ()
-    more += PIN_FRICTION_COLUMNS if pin and ages else ()
+    more += JOINT_LOAD_COLUMNS[:joints]
+    more += JOINT_FRICTION_COLUMNS[:joints] if ages else ()
     return (ROLLER_COLUMNS if roller else GEAR_COLUMNS) + more

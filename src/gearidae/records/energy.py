@@ -9,6 +9,7 @@ from functools import partial
 from typing import Final
 
 from gearidae.laws.frictions import FRICTION_LAWS
+from gearidae.laws.joints import JOINTS
 from gearidae.laws.law import Loss
 from gearidae.laws.pairs import MESH_LAWS
 from gearidae.laws.shafts import SHAFT_LAWS
@@ -54,26 +55,21 @@ ENERGY_SUMS: Final = (
         since="0.2",
     ),
     _loss(
-        "hub_loss",
-        "energy lost to friction of the pinion's and the gear's hub",
-        shape=(2,),
-        archive={
-            "pinion_hub_loss": "energy lost to friction of the pinion's hub",
-            "gear_hub_loss": "energy lost to friction of the gear's hub",
-        },
+        "joint_loss",
+        "energy lost to friction of the joints",
+        shape=(len(JOINTS),),
+        archive={f"{joint.prefix}_loss": f"energy lost to friction of {joint.words}" for joint in JOINTS},
         group="friction",
         since="0.2",
     ),
-    _loss("pin_loss", "energy lost to friction of the pin", archive=True, group="friction", since="0.3"),
     Quantity(
         "sliding",
         "loads of the joints, integrated over their sliding distances",
         Unit("F sigma", "N m", force=1, length=1),
-        shape=(3,),
+        shape=(len(JOINTS),),
         archive={
-            "pinion_hub_sliding": "load of the pinion's hub, integrated over its sliding distance",
-            "gear_hub_sliding": "load of the gear's hub, integrated over its sliding distance",
-            "pin_sliding": "load of the pin, integrated over its sliding distance",
+            f"{joint.prefix}_sliding": f"load of {joint.words}, integrated over its sliding distance"
+            for joint in JOINTS
         },
         since="0.3",
     ),

@@ -12,6 +12,7 @@ from functools import partial
 from typing import Final, NamedTuple
 
 from gearidae.laws.frictions import FRICTION_LAWS
+from gearidae.laws.joints import JOINT_LAWS
 from gearidae.records.quantity import PITCHES, SECONDS, TORQUE, Quantity, count
 
 COLUMNS = (
@@ -28,13 +29,10 @@ class Holding(IntFlag):
 
     _ignore_ = "holder"
 
-    for holder in (holder for law in FRICTION_LAWS for holder in law.holders):
+    for holder in (holder for laws in (FRICTION_LAWS, JOINT_LAWS) for law in laws for holder in law.holders):
         vars()[holder.name.upper()] = holder.number
-    HUB_FRICTION = 2
     FLANK_FRICTION = 4
     ADHESION = 8
-    PIN_FRICTION = 16
-    AXIAL_LOAD = 32
     DRIVE_WELL = 64
     SHAFT_TIE = 128
 

@@ -14,11 +14,12 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from gearidae.asperities import law_class, law_names
 from gearidae.errors import SceneError
 from gearidae.laws.frictions import FRICTION_LAWS, asks_for, key_of
+from gearidae.laws.joints import JOINT_LAWS
 from gearidae.laws.law import DRIVE, LOAD, ShaftLaw, on_shaft
 from gearidae.laws.pairs import MESH_LAWS, has_mesh_law
 from gearidae.laws.shafts import SHAFT_LAWS, has_law
 from gearidae.scene.friction import has_flank_friction
-from gearidae.scene.joints import joints
+from gearidae.scene.joints import ages, has_joint
 from gearidae.scene.keys import scene_value
 from gearidae.scene.orbit import has_orbit
 from gearidae.scene.pitch_errors import has_pitch_errors
@@ -69,17 +70,8 @@ FEATURES: Final = {
     "attraction": Feature("surface.hamaker", lambda scene: scene.attracts),
     "coulomb friction": Feature("contact.friction", lambda scene: _flanks_rub(scene, "coulomb")),
     "shear friction": Feature("contact.shear_strength", lambda scene: _flanks_rub(scene, "shear")),
-    "hub friction": Feature(
-        "gears.hub_friction",
-        lambda scene: any(joint.coefficient > 0.0 and joint.name != "pin" for joint in joints(scene)),
-    ),
-    "friction that ages": Feature(
-        "gears.hub_friction_rise", lambda scene: any(joint.rise > 0.0 for joint in joints(scene))
-    ),
-    "pin friction": Feature(
-        "drive.pin_radius",
-        lambda scene: any(joint.coefficient > 0.0 and joint.name == "pin" for joint in joints(scene)),
-    ),
+    **{f"{law.name} friction": Feature(law.key, partial(has_joint, law=law)) for law in JOINT_LAWS},
+    "friction that ages": Feature("gears.hub_friction_rise", ages),
     **{law.name: Feature(key_of(law), partial(asks_for, law=law)) for law in FRICTION_LAWS},
     **{
         f"{name} asperities": Feature("contact.asperity", partial(_has_asperities, name=name))

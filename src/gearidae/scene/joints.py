@@ -9,6 +9,10 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Protocol
 
 from gearidae.errors import SceneError
+from gearidae.laws.joint_law import JointLaw
+from gearidae.laws.law import SHAFT_NAMES
+from gearidae.laws.shaft.hub import HUB
+from gearidae.laws.shaft.pin import PIN
 from gearidae.records.standing import Holding
 from gearidae.torques import torque_law
 
@@ -52,6 +56,11 @@ class Joint:
     adhesion: float = 0.0
     axial_load: float = 0.0
     dimple_radius: float = 0.0
+
+    @property
+    def law(self) -> JointLaw:
+        """Kind of the joint."""
+        return PIN if self.name == PIN.name else HUB
 
     @property
     def arm(self) -> float:
@@ -105,9 +114,9 @@ class Joint:
         """What of the joint may hold a gear."""
         holding = Holding(0)
         if self.largest * self.radius > 0.0:
-            holding |= Holding.PIN_FRICTION if self.name == "pin" else Holding.HUB_FRICTION
+            holding |= self.law.holders[0].number
         if self.largest * self.dimple_radius * self.axial_load > 0.0:
-            holding |= Holding.AXIAL_LOAD
+            holding |= HUB.holders[1].number
         return holding
 
 
@@ -144,7 +153,7 @@ def joints(scene: Scene) -> tuple[Joint, ...]:
 
 @lru_cache(maxsize=64)
 def _joints_of(gears: Gears, drive: Drive) -> tuple[Joint, ...]:
-    return _there(_hub(gears, "pinion"), _hub(gears, "gear"), _pin(gears, drive))
+    return _there(*(hub_in(gears, f"{one} hub", f"{one}_") for one in SHAFT_NAMES), _pin(gears, drive))
 
 
 def _there(*every: Joint) -> tuple[Joint, ...]:
@@ -160,9 +169,11 @@ def train_pin(scene: Scene) -> Joint:
     return _pin(scene.shafts[scene.train.shafts[scene.train.drive].name], scene.drive)
 
 
-def _hub(gears: Gears, shaft: str) -> Joint:
-    keys = {name: getattr(gears, f"{shaft}_{key}") for name, key in _HUB_KEYS.items()}
-    return Joint(f"{shaft} hub", gears.hub_friction, **keys, **ageing_of(gears))
+def hub_in(table: HubFriction, name: str, prefix: str = "") -> Joint:
+    """Return the hub of a shaft whose keys begin with a prefix in a table."""
+    numbers = {field: getattr(table, prefix + key) for field, key in HUB_KEYS.items()}
+    ageing = _ageing(table.hub_friction_rise, table.hub_ageing_time, table.hub_memory_length)
+    return Joint(name, table.hub_friction, **numbers, **ageing)
 
 
 def _pin(hubs: HubFriction, drive: Drive) -> Joint:
@@ -177,11 +188,6 @@ def _pin(hubs: HubFriction, drive: Drive) -> Joint:
     return Joint("pin", coefficient, drive.pin_radius, **ageing)
 
 
-def ageing_of(hubs: HubFriction) -> dict[str, float]:
-    """What a hub ages by."""
-    return _ageing(hubs.hub_friction_rise, hubs.hub_ageing_time, hubs.hub_memory_length)
-
-
 def _ageing(rise: float, time: float | None, length: float | None) -> dict[str, float]:
     """What a joint ages by; scenes are checked for what a rise needs."""
     if time is None or length is None:
@@ -189,18 +195,23 @@ def _ageing(rise: float, time: float | None, length: float | None) -> dict[str, 
     return {"rise": rise, "ageing_time": time, "memory_length": length}
 
 
-_HUB_KEYS = {
+HUB_KEYS = {
     "radius": "hub_radius",
     "adhesion": "hub_adhesion",
     "axial_load": "axial_load",
     "dimple_radius": "dimple_radius",
 }
-"""Numbers of a hub, and the ends of their keys."""
+"""Numbers of a hub, and their keys of a shaft of a train, which a pair has for its pinion and its gear."""
 
 
 def ages(scene: Scene) -> bool:
     """Whether friction of a joint of a scene grows with the time at rest."""
     return any(joint.rise > 0.0 for joint in joints(scene))
+
+
+def has_joint(scene: Scene, law: JointLaw) -> bool:
+    """Whether a joint of a kind has friction in a scene."""
+    return any(joint.coefficient > 0.0 and joint.law is law for joint in joints(scene))
 
 
 def has_joint_friction(scene: Scene) -> bool:
@@ -220,7 +231,7 @@ def check_joints(scene: GearScene) -> None:
     _check_ageing("gears", scene.gears)
     _check_pin_ageing(scene.drive, scene.gears)
     gears, there = scene.gears, {joint.name: joint for joint in joints(scene)}
-    for shaft in ("pinion", "gear"):
+    for shaft in SHAFT_NAMES:
         for load, radius in (("hub_adhesion", "hub_radius"), ("axial_load", "dimple_radius")):
             if getattr(gears, f"{shaft}_{load}") > 0.0 and getattr(gears, f"{shaft}_{radius}") == 0.0:
                 raise SceneError(f"gears.{shaft}_{radius}", 0.0, f"must be above 0 with gears.{shaft}_{load}")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from gearidae.laws.joints import JOINTS, PIN
 from gearidae.laws.shafts import sampled_laws
 from gearidae.records import Events, Impacts, Passages, Rows, sampled_columns
 from gearidae.scene.joints import has_pin, joints
@@ -15,13 +16,12 @@ if TYPE_CHECKING:
 def columns_of(scene: Scene) -> tuple[str, ...]:
     """Names of the sampled columns of a scene."""
     contact, there = scene.contact, joints(scene)
-    hubs = bool(there)
+    followed = len(JOINTS) if has_pin(scene) else PIN  # the pin is the last
     columns = sampled_columns(
         roller=scene.roller is not None,
         bodies=contact.bodies,
         roughness=contact.roughness,
-        hubs=hubs,
-        pin=hubs and has_pin(scene),
+        joints=followed if there else 0,
         ages=any(joint.rise > 0.0 for joint in there),
     )
     return columns if scene.gears is None else columns + sampled_laws(scene)

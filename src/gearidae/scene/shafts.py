@@ -11,14 +11,12 @@ from gearidae.errors import SceneError
 from gearidae.scene.coating import Coating
 from gearidae.scene.gears import HubRadius, JointForce, Mesh, Teeth
 from gearidae.scene.group import Group, shorten
-from gearidae.scene.joints import HubFriction, Joint, ageing_of
+from gearidae.scene.joints import HubFriction, Joint, hub_in
 from gearidae.scene.knots import Resistance
 from gearidae.scene.named_tables import NamedTables
 from gearidae.scene.quantity import Count, Quantity
 from gearidae.scene.surface import AgeingTime, Contact, Friction, FrictionRise, MemoryLength, Surface
 
-HUB_KEYS: Final = ("hub_radius", "hub_adhesion", "axial_load", "dimple_radius")
-"""Keys of the hub of a shaft that a pair has for its pinion and its gear."""
 FRICTION_KEYS: Final = ("hub_friction", "hub_friction_rise", "hub_ageing_time", "hub_memory_length")
 """Keys of the friction of a hub that a pair has for both."""
 
@@ -92,15 +90,7 @@ class Shaft(Group):
         """Return its hub, of a shaft of this name; None without a radius at which a hub or dimples slide."""
         if self.hub_radius == 0.0 and self.dimple_radius == 0.0:
             return None
-        return Joint(
-            f"hub of {name}",
-            self.hub_friction,
-            self.hub_radius,
-            adhesion=self.hub_adhesion,
-            axial_load=self.axial_load,
-            dimple_radius=self.dimple_radius,
-            **ageing_of(self),
-        )
+        return hub_in(self, f"hub of {name}")
 
     def gear_teeth(self, name: str) -> dict[str, int]:
         """Teeth of its gears by the names that meshes use, of a shaft of this name."""

@@ -25,9 +25,10 @@ from gearidae.mesh.involute import Geometry, GeometryError, mesh_geometry
 from gearidae.scene.coating import Coating
 from gearidae.scene.gears import LAW_KEYS, Mesh, disc_inertia
 from gearidae.scene.group import did_you_mean
+from gearidae.scene.joints import HUB_KEYS
 from gearidae.scene.named_tables import NamedTables
 from gearidae.scene.phases import Mount, with_phases
-from gearidae.scene.shafts import HUB_KEYS, Meshing, Shaft, friction_of
+from gearidae.scene.shafts import Meshing, Shaft, friction_of
 from gearidae.scene.surface import Contact, Surface
 
 if TYPE_CHECKING:
@@ -185,7 +186,7 @@ def pair_shafts(gears: Gears) -> NamedTables[Shaft]:
             inertia=getattr(gears, f"{name}_inertia"),
             teeth=getattr(gears, f"{name}_teeth"),
             **(friction_of(gears) if _has_joint(gears, name) else {}),
-            **{key: getattr(gears, f"{name}_{key}") for key in HUB_KEYS},
+            **{key: getattr(gears, f"{name}_{key}") for key in HUB_KEYS.values()},
         )
         for name in ("pinion", "gear")
     }

@@ -10,9 +10,9 @@ from gearidae.errors import SceneError
 from gearidae.scene.friction import has_flank_friction
 from gearidae.scene.gears import Gears
 from gearidae.scene.group import shorten
-from gearidae.scene.joints import check_train_joints
+from gearidae.scene.joints import HUB_KEYS, check_train_joints
 from gearidae.scene.pitch_errors import errors_in_train
-from gearidae.scene.shafts import FRICTION_KEYS, HUB_KEYS, friction_of
+from gearidae.scene.shafts import FRICTION_KEYS, friction_of
 from gearidae.scene.torque import Drive, Load
 
 if TYPE_CHECKING:
@@ -86,7 +86,7 @@ def _hubs(scene: TrainScene, mesh: TrainMesh) -> dict[str, Any]:
     frictions: dict[str, dict[str, Any]] = {}
     for side, number in (("pinion", mesh.a), ("gear", mesh.b)):
         shaft = scene.shafts[names[number]]
-        keys |= {f"{side}_{key}": getattr(shaft, key) for key in HUB_KEYS}
+        keys |= {f"{side}_{key}": getattr(shaft, key) for key in HUB_KEYS.values()}
         if shaft.hub_of(names[number]) is not None:
             frictions[names[number]] = friction_of(shaft)
     for key in FRICTION_KEYS if len(frictions) > 1 else ():

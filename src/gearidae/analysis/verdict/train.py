@@ -31,6 +31,7 @@ from gearidae.engine.train.free_train import FreeTrain
 from gearidae.laws.frictions import friction_laws_of
 from gearidae.laws.law import LOAD
 from gearidae.laws.shaft.dry_load import DRY_LOAD
+from gearidae.laws.shaft.hub import HUB
 from gearidae.records import RUN_PARTS, EventKind, Extremes
 from gearidae.records.standing import (
     COLUMNS,
@@ -450,7 +451,7 @@ def _holders(
     for number, (name, shaft) in enumerate(scene.shafts.items()):
         hub = shaft.hub_of(name)
         if number in at_rest and hub is not None and hub.holding:
-            holding |= Holding.HUB_FRICTION
+            holding |= HUB.holders[0].number
             held.append(f"hub friction of {name}")
     for number in solution.flanks_held:
         holding |= Holding.FLANK_FRICTION

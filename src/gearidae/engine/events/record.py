@@ -6,9 +6,9 @@ import math
 from typing import Final
 
 from gearidae.compiled import compiled
-from gearidae.engine.friction.forces import has_gear_element
+from gearidae.engine.friction.forces import has_element
 from gearidae.engine.model.record_types import STUCK
-from gearidae.engine.model.state import Floats, Model
+from gearidae.engine.model.state import LOAD, Floats, Model
 from gearidae.engine.motion.pair_forces import force_of_one
 from gearidae.engine.pairs.tooth_pairs import flank_of_history
 from gearidae.records import EVENT, EventKind, Flank
@@ -98,7 +98,7 @@ def record_changes(m: Model, t: float, events: Floats, count: int) -> int:
             continue
         kind = _STICK if h.slide == STUCK else _SLIP if last == STUCK else _REVERSAL
         count = record(m, events, count, t, kind, h.pair, flank_of_history(m, k), h.gap_rate)
-    if has_gear_element(m) and (m.state.slip == 0.0) != (before.before_slip == 0.0):
+    if has_element(m, LOAD) and (m.state.slip == 0.0) != (before.before_slip == 0.0):
         kind = _GEAR_STICK if m.state.slip == 0.0 else _GEAR_SLIP
         count = record(m, events, count, t, kind, 0, _NO_FLANK, 0.0)
     return count

@@ -16,7 +16,7 @@ from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import FRICTION
 from gearidae.engine.events.record import note_directions, record_changes
 from gearidae.engine.friction.ageing import begin_ageing
-from gearidae.engine.friction.forces import NO_FORCE, Shafts, has_gear_element, solve_shafts
+from gearidae.engine.friction.forces import NO_FORCE, Shafts, has_element, solve_shafts
 from gearidae.engine.friction.hubs import has_hubs
 from gearidae.engine.friction.pairs import RUBS, lever_rate, levers
 from gearidae.engine.friction.rest import list_elements, rest_margin, way_from_rest
@@ -28,7 +28,7 @@ from gearidae.engine.model.record_types import (
     HELD_PINION,
     STUCK,
 )
-from gearidae.engine.model.state import Floats, Model, Record, V, W
+from gearidae.engine.model.state import DRIVE, LOAD, Floats, Model, Record, V, W
 from gearidae.engine.motion.shafts import forces_at_shafts
 from gearidae.engine.pairs.mesh_error import pinion_speed, rate_of
 from gearidae.engine.pairs.orbit import follow_orbit
@@ -88,9 +88,9 @@ def sliding_guard(m: Model, t: float, y: Floats) -> float:
     if state.hold != FREE or has_hubs(m):
         shafts = solve_shafts(m, t, y, surface_speed, pinion, gear)
         least = min(least, shafts.margin + 2.0 * NO_FORCE, shafts.corner)
-    if has_gear_element(m) and state.slip != 0.0:
+    if has_element(m, LOAD) and state.slip != 0.0:
         least = min(least, state.slip * w + STILL)
-    if m.scene.friction.pinion_rubs != 0 and state.pinion_slip != 0.0:
+    if has_element(m, DRIVE) and state.pinion_slip != 0.0:
         least = min(least, state.pinion_slip * surface_speed + STILL)
     return least
 
@@ -187,9 +187,9 @@ def settle_sliding(m: Model, t: float, y: Floats, fresh: bool) -> bool:
                 h.slide = -h.slide
             else:
                 kind, history = HELD_PAIR, noted.history
-    if has_gear_element(m) and state.slip != 0.0 and _has_fallen(state.slip, w, fresh):
+    if has_element(m, LOAD) and state.slip != 0.0 and _has_fallen(state.slip, w, fresh):
         kind = HELD_GEAR
-    rubs = m.scene.friction.pinion_rubs != 0 and state.pinion_slip != 0.0
+    rubs = has_element(m, DRIVE) and state.pinion_slip != 0.0
     if rubs and _has_fallen(state.pinion_slip, surface_speed, fresh):
         kind = HELD_PINION
     if state.hold == AT_REST:

@@ -25,7 +25,8 @@ from typing import NamedTuple
 from gearidae.compiled import compiled
 from gearidae.engine.friction.hubs import Loads, across, consistent_loads, loads_with_friction
 from gearidae.engine.model.record_types import HELD_GEAR
-from gearidae.engine.model.state import Model
+from gearidae.engine.model.state import DRIVE, LOAD, Model
+from gearidae.laws.joint_law import JointFriction
 
 _PARALLEL = 1e-12
 
@@ -40,12 +41,9 @@ class _Left(NamedTuple):
 
 
 class _Limits(NamedTuple):
-    """What may hold the shafts: coefficients of the loads of the hubs, and what does not depend on them."""
+    """What may hold the shafts, with the loads of their hubs and without, and the force of the pin."""
 
-    pinion: float
-    gear: float
-    pinion_constant: float
-    gear_constant: float
+    of_shaft: tuple[JointFriction, JointFriction]
     pin: tuple[float, float]
 
 
@@ -53,14 +51,14 @@ class _Limits(NamedTuple):
 def equilibrium_margin(m: Model, pinion: float, gear: float) -> float:
     """Largest reserve of force of all vertices; below zero if and only if nothing balances."""
     work = m.work.friction
-    pinion_hub = gear_hub = pinion_constant = gear_constant = 0.0
+    on_pinion = on_gear = JointFriction(0.0, 0.0)
     for i in range(work.pairs, work.count):
-        if work.element[i].hold == HELD_GEAR:
-            gear_hub, gear_constant = work.element[i].hub, work.element[i].limit
+        element = work.element[i]
+        if element.hold == HELD_GEAR:
+            on_gear = JointFriction(element.by_load, element.limit)
         else:
-            pinion_hub, pinion_constant = work.element[i].hub, work.element[i].limit
-    pin = (work.pin[0], work.pin[1])
-    limits = _Limits(pinion_hub, gear_hub, pinion_constant, gear_constant, pin)
+            on_pinion = JointFriction(element.by_load, element.limit)
+    limits = _Limits((on_pinion, on_gear), (work.pin[0], work.pin[1]))
     free = _Left(pinion, gear, work.load[0], work.load[1])
     if work.pairs == 0:
         return _at_vertex(free, limits)
@@ -127,44 +125,32 @@ def _at_vertex(left: _Left, limits: _Limits) -> float:
     """Reserve of both shafts where all frictions of the pairs are known."""
     x, z = limits.pin
     loads = Loads(math.hypot(left.along - x, left.over - z), math.hypot(left.along, left.over))
-    return min(_reserve_of_pinion(limits, loads, left.pinion), _reserve_of_gear(limits, loads, left.gear))
+    return min(_reserve(limits, loads, DRIVE, left.pinion), _reserve(limits, loads, LOAD, left.gear))
 
 
 @compiled(inline=True)
-def _reserve_of_pinion(limits: _Limits, loads: Loads, force: float) -> float:
-    return limits.pinion_constant + limits.pinion * loads.pinion - abs(force)
-
-
-@compiled(inline=True)
-def _reserve_of_gear(limits: _Limits, loads: Loads, force: float) -> float:
-    return limits.gear_constant + limits.gear * loads.gear - abs(force)
+def _reserve(limits: _Limits, loads: Loads, shaft: int, force: float) -> float:
+    held = limits.of_shaft[shaft]
+    return held.constant + held.by_load * loads[shaft] - abs(force)
 
 
 @compiled
 def _with_one(m: Model, left: _Left, i: int, limits: _Limits) -> float:
     """Largest reserve where the friction of one pair is such that one shaft is held by all that it has."""
     element, best = m.work.friction.element[i], -math.inf
+    lever, force = (element.pinion, element.gear), (left.pinion, left.gear)
     for which in range(4):
-        sign = 1.0 - 2.0 * (which % 2)
-        falls = gear_falls = 0.0
-        if which < 2:
-            constant = (left.pinion - sign * limits.pinion_constant) / element.pinion
-            falls = sign * limits.pinion / element.pinion
-        else:
-            constant = (left.gear - sign * limits.gear_constant) / element.gear
-            gear_falls = sign * limits.gear / element.gear
-        total = (left.along, left.over)
-        near, far, room = loads_with_friction(
-            m, element.flank != 0, total, constant, (falls, gear_falls), limits.pin
-        )
+        shaft, sign = which // 2, 1.0 - 2.0 * (which % 2)
+        held, other = limits.of_shaft[shaft], 1 - shaft
+        constant = (force[shaft] - sign * held.constant) / lever[shaft]
+        fall = sign * held.by_load / lever[shaft]
+        falls, total = (fall, 0.0) if shaft == DRIVE else (0.0, fall), (left.along, left.over)
+        near, far, room = loads_with_friction(m, element.flank != 0, total, constant, falls, limits.pin)
         for end in range(2):
             loads = far if end else near
-            friction = constant - falls * loads.pinion - gear_falls * loads.gear
-            if which < 2:
-                other = _reserve_of_gear(limits, loads, left.gear - friction * element.gear)
-            else:
-                other = _reserve_of_pinion(limits, loads, left.pinion - friction * element.pinion)
-            best = max(best, min(room, other, element.limit - abs(friction)))
+            friction = constant - fall * loads[shaft]
+            reserve = _reserve(limits, loads, other, force[other] - friction * lever[other])
+            best = max(best, min(room, reserve, element.limit - abs(friction)))
     return best
 
 
@@ -176,6 +162,7 @@ def _with_two(m: Model, left: _Left, i: int, k: int, limits: _Limits) -> float:
     """
     work, best = m.work.friction, -math.inf
     first, second = work.element[i], work.element[k]
+    pinion, gear = limits.of_shaft
     determinant = first.pinion * second.gear - second.pinion * first.gear
     if abs(determinant) < _PARALLEL:
         return best
@@ -183,8 +170,8 @@ def _with_two(m: Model, left: _Left, i: int, k: int, limits: _Limits) -> float:
     second_along, second_over = across(m, second.flank != 0)
     for which in range(4):
         on_pinion, on_gear = 1.0 - 2.0 * (which % 2), 1.0 - 2.0 * (which // 2)
-        a, b = left.pinion - on_pinion * limits.pinion_constant, left.gear - on_gear * limits.gear_constant
-        c, d = on_pinion * limits.pinion / determinant, on_gear * limits.gear / determinant
+        a, b = left.pinion - on_pinion * pinion.constant, left.gear - on_gear * gear.constant
+        c, d = on_pinion * pinion.by_load / determinant, on_gear * gear.by_load / determinant
         f, g = (
             (a * second.gear - second.pinion * b) / determinant,
             (first.pinion * b - a * first.gear) / determinant,

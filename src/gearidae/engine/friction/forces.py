@@ -13,7 +13,7 @@ from typing import Final, NamedTuple
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import FRICTION
-from gearidae.engine.friction.ageing import JointFriction, joint_friction
+from gearidae.engine.friction.ageing import OfJoints, joint_friction
 from gearidae.engine.friction.hubs import (
     Loads,
     Mesh,
@@ -35,6 +35,7 @@ from gearidae.engine.model.state import COAST, DRIVE, LOAD, PHASE, Floats, Model
 from gearidae.engine.pairs.shaft_angle import torque_angle
 from gearidae.engine.pairs.tooth_pairs import flank_of_history, pair_gap
 from gearidae.laws.frictions import law_limit, resists
+from gearidae.laws.joints import PIN
 from gearidae.laws.shafts import acting
 
 SEEN: Final = 0.1
@@ -46,9 +47,9 @@ NO_FORCE: Final = 1e-12
 
 
 @compiled(inline=True)
-def has_gear_element(m: Model) -> bool:
-    """Whether a law of its shaft or a joint may hold the gear."""
-    return bool(resists(m, LOAD) or m.scene.friction.gear_rubs != 0)
+def has_element(m: Model, shaft: int) -> bool:
+    """Whether a law of a shaft or a joint may hold it."""
+    return bool(resists(m, shaft) or m.scene.friction.rubs[shaft] != 0)
 
 
 @compiled(inline=True)
@@ -64,18 +65,15 @@ def _own_limit(m: Model, shaft: int, t: float, y: Floats, speed: float) -> float
 
 
 @compiled(inline=True)
-def gear_limit(m: Model, t: float, y: Floats, joints: JointFriction) -> float:
-    """Limit of what resists the gear, over its base radius, without what grows with the load of its hub."""
-    return own_limit(m, LOAD, t, y, y[W]) + joints.gear_constant
-
-
-@compiled(inline=True)
-def pinion_limit(
-    m: Model, t: float, y: Floats, surface_speed: float, joints: JointFriction, pin: tuple[float, float]
+def shaft_limit(
+    m: Model, shaft: int, t: float, y: Floats, speed: float, joints: OfJoints, pin: tuple[float, float]
 ) -> float:
-    """Limit of what resists the pinion under the force of a pin, without what grows with the load of its hub."""
-    own = own_limit(m, DRIVE, t, y, surface_speed)
-    return own + joints.pinion_constant + joints.pin * math.hypot(pin[0], pin[1])
+    """Limit of what resists a shaft, over its base radius, without what grows with the load of its hub.
+
+    The speed is that of the base circle, `pin` the force of a pin, which drives the pinion.
+    """
+    limit = own_limit(m, shaft, t, y, speed) + joints[shaft].constant
+    return limit + joints[PIN].by_load * math.hypot(pin[0], pin[1]) if shaft == DRIVE else limit
 
 
 class Shafts(NamedTuple):
@@ -198,10 +196,11 @@ def solve_shafts(m: Model, t: float, y: Floats, surface_speed: float, pinion: fl
         return Shafts(0.0, 0.0, 0.0, 0.0, mesh, loads, pin, corner)
     joints = joint_friction(m, t, y)
     a1, a2 = m.scene.pinion_inverse_mass, m.scene.gear_inverse_mass
-    first_limit, second_limit = pinion_limit(m, t, y, surface_speed, joints, pin), gear_limit(m, t, y, joints)
+    first_limit = shaft_limit(m, DRIVE, t, y, surface_speed, joints, pin)
+    second_limit = shaft_limit(m, LOAD, t, y, y[W], joints, pin)
     on_pinion = pairs.pinion - state.pinion_slip * first_limit
-    on_gear = pairs.gear - _gear_slip(m) * second_limit
-    hub_on_pinion, hub_on_gear = state.pinion_slip * joints.pinion_hub, _gear_slip(m) * joints.gear_hub
+    on_gear = pairs.gear - state.slip * second_limit
+    hub_on_pinion, hub_on_gear = state.pinion_slip * joints[DRIVE].by_load, state.slip * joints[LOAD].by_load
     held, margin = 0.0, math.inf
     if state.hold == HELD_PAIR:
         first, second = a1 * pairs.first, a2 * pairs.second
@@ -216,10 +215,10 @@ def solve_shafts(m: Model, t: float, y: Floats, surface_speed: float, pinion: fl
     on_pinion -= hub_on_pinion * loads.pinion
     on_gear -= hub_on_gear * loads.gear
     if state.hold == HELD_GEAR:
-        margin = second_limit + joints.gear_hub * loads.gear - abs(pairs.gear)
+        margin = second_limit + joints[LOAD].by_load * loads.gear - abs(pairs.gear)
         return Shafts(a1 * on_pinion, 0.0, pairs.gear, margin, mesh, loads, pin, corner)
     if state.hold == HELD_PINION:
-        margin = first_limit + joints.pinion_hub * loads.pinion - abs(pairs.pinion)
+        margin = first_limit + joints[DRIVE].by_load * loads.pinion - abs(pairs.pinion)
         return Shafts(0.0, a2 * on_gear, pairs.pinion, margin, mesh, loads, pin, corner)
     return Shafts(a1 * on_pinion, a2 * on_gear, held, margin, mesh, loads, pin, corner)
 
@@ -252,12 +251,6 @@ def _with_held(
     else:
         drive_friction += held
     return Mesh(drive, coast, drive_friction, coast_friction), solved.near, held, solved.room
-
-
-@compiled(inline=True)
-def _gear_slip(m: Model) -> float:
-    """Direction in which the gear slips, 0 without anything that might hold it."""
-    return m.state.slip if has_gear_element(m) else 0.0
 
 
 @compiled(inline=True)
@@ -316,8 +309,8 @@ def load_pace(m: Model, speed_weight: float) -> float:
     if load == 0.0 or rate == 0.0:
         return 0.0
     beside = abs(x * z_rate - z * x_rate) / rate
-    on_pinion = m.scene.pinion_inverse_mass * friction.pinion_hub if friction.forced == 0 else 0.0
-    on_gear = m.scene.gear_inverse_mass * friction.gear_hub
+    on_pinion = m.scene.pinion_inverse_mass * friction.joint[DRIVE].by_load if friction.forced == 0 else 0.0
+    on_gear = m.scene.gear_inverse_mass * friction.joint[LOAD].by_load
     if (on_pinion + on_gear) * beside * beside * speed_weight <= SEEN * rate:
         return 0.0
     return float(rate / load)

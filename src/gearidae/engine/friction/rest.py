@@ -16,7 +16,7 @@ from typing import NamedTuple
 from gearidae.compiled import compiled
 from gearidae.engine.friction.ageing import joint_friction
 from gearidae.engine.friction.equilibrium import equilibrium_margin
-from gearidae.engine.friction.forces import gear_limit, has_gear_element, pinion_limit
+from gearidae.engine.friction.forces import has_element, shaft_limit
 from gearidae.engine.friction.hubs import (
     Loads,
     Mesh,
@@ -28,7 +28,7 @@ from gearidae.engine.friction.hubs import (
 )
 from gearidae.engine.friction.pairs import levers
 from gearidae.engine.model.record_types import HELD_GEAR, HELD_PAIR, HELD_PINION
-from gearidae.engine.model.state import COAST, Floats, Model, Record
+from gearidae.engine.model.state import COAST, DRIVE, LOAD, Floats, Model, Record, W
 from gearidae.engine.pairs.tooth_pairs import flank_of_history
 
 
@@ -54,21 +54,22 @@ def list_elements(m: Model, t: float, y: Floats) -> None:
     work.load[0], work.load[1] = vector_sum(m, Mesh(drive, coast, 0.0, 0.0))
     pin, joints = pin_force(m, t, y, 0.0), joint_friction(m, t, y)
     work.pin[0], work.pin[1] = pin
-    if has_gear_element(m):
-        _set(work.element[count], 0.0, 1.0, gear_limit(m, t, y, joints), HELD_GEAR)
-        work.element[count].hub = joints.gear_hub
-        count += 1
-    if friction.pinion_rubs != 0:
-        _set(work.element[count], 1.0, 0.0, pinion_limit(m, t, y, 0.0, joints, pin), HELD_PINION)
-        work.element[count].hub = joints.pinion_hub
-        count += 1
+    for shaft in (LOAD, DRIVE):
+        if has_element(m, shaft):
+            limit = shaft_limit(m, shaft, t, y, y[W] if shaft == LOAD else 0.0, joints, pin)
+            if shaft == LOAD:
+                _set(work.element[count], 0.0, 1.0, limit, HELD_GEAR)
+            else:
+                _set(work.element[count], 1.0, 0.0, limit, HELD_PINION)
+            work.element[count].by_load = joints[shaft].by_load
+            count += 1
     work.count = count
 
 
 @compiled(inline=True)
 def _set(element: Record, pinion: float, gear: float, limit: float, hold: int) -> None:
     element.pinion, element.gear, element.limit, element.hold = pinion, gear, max(limit, 0.0), hold
-    element.hub, element.flank = 0.0, 0
+    element.by_load, element.flank = 0.0, 0
 
 
 @compiled
@@ -170,8 +171,8 @@ def _slipping(m: Model, pinion: float, gear: float, x: float, y: float, i: int, 
         friction = slip * other.limit
         pinion -= friction * other.pinion
         gear -= friction * other.gear
-        by_pinion += slip * other.hub * other.pinion
-        by_gear += slip * other.hub * other.gear
+        by_pinion += slip * other.by_load * other.pinion
+        by_gear += slip * other.by_load * other.gear
         if other.hold == HELD_PAIR:
             first, second = across(m, other.flank != 0)
             along += friction * first
@@ -204,7 +205,9 @@ def _along(m: Model, pinion: float, gear: float, x: float, y: float, i: int) -> 
         loads = far if which else near
         on_pinion, on_gear = s.pinion - s.by_pinion * loads.pinion, s.gear - s.by_gear * loads.gear
         slope = x * on_pinion + y * on_gear
-        limit = element.limit + element.hub * (loads.pinion if element.hold == HELD_PINION else loads.gear)
+        limit = element.limit + element.by_load * (
+            loads.pinion if element.hold == HELD_PINION else loads.gear
+        )
         reserve = limit - abs(held - falls * loads.pinion - gear_falls * loads.gear)
         reserve = min(reserve, room, slope / math.hypot(x, y))
         if reserve > best.reserve:

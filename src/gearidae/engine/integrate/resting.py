@@ -16,6 +16,7 @@ from gearidae.engine.compiling import FRICTION
 from gearidae.engine.events.events import ROOT, STOP
 from gearidae.engine.events.rest_search import rest_until
 from gearidae.engine.events.stops import next_stop
+from gearidae.engine.friction.forces import has_element
 from gearidae.engine.model.record_types import AT_REST, FREE, HELD_GEAR
 from gearidae.engine.model.state import DRIVE, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.pair_forces import forces_at
@@ -61,7 +62,7 @@ def is_at_rest(m: Model, t: float, y: Floats) -> bool:
 @compiled
 def _holds_gear(m: Model) -> bool:
     """Whether the gear is held at rest, and the pinion by nothing but its teeth, whose bodies are rigid."""
-    bare = m.scene.friction.flanks == 0 and m.scene.friction.pinion_rubs == 0
+    bare = m.scene.friction.flanks == 0 and not has_element(m, DRIVE)
     return bool(m.state.hold == HELD_GEAR and bare and m.scene.nodes == 0)
 
 

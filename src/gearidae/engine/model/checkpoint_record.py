@@ -17,6 +17,7 @@ from gearidae.engine.model.record_types import (
     STUCK,
     record_type,
 )
+from gearidae.laws.joints import JOINTS
 from gearidae.laws.shafts import SHAFT_LAWS
 from gearidae.records import COUNTERS, RUN_PARTS
 from gearidae.records.energy import ENERGY_SUMS
@@ -242,7 +243,7 @@ _STOOD_FIELDS: Final = (
 
 _AGEING_FIELDS: Final = (
     Quantity("time", "when ages, ways and speeds have last been noted", TIME),
-    Quantity("age", "of the contacts of pinion's hub, gear's hub and pin", TIME, shape=(3,)),
+    Quantity("age", "of the contacts of the joints", TIME, shape=(len(JOINTS),)),
     Quantity("way", "of the base circles of pinion and gear then", LENGTH, shape=(2,)),
     Quantity("speed", "of the base circles then", SPEED, shape=(2,)),
 )

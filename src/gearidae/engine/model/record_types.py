@@ -48,11 +48,6 @@ HELD_PINION: Final = 3
 AT_REST: Final = 4
 """What friction holds: nothing; the sliding of one pair, which rolls; the gear; the pinion; or both gears."""
 
-PINION_HUB: Final = 0
-GEAR_HUB: Final = 1
-PIN: Final = 2
-"""Joints."""
-
 # -- the state vector ------------------------------------------------------------------------------------------------
 U: Final = 0  # dynamic transmission error (a roller's height with the other sign) / sigma
 V: Final = 1  # its rate

@@ -16,6 +16,8 @@ from gearidae.engine.model.record_types import (
     record_type,
 )
 from gearidae.laws.frictions import LAWS_OF_SHAFTS
+from gearidae.laws.joint_law import JOINT_FIELDS
+from gearidae.laws.joints import JOINTS
 from gearidae.laws.pairs import MESH_LAWS
 
 MATERIAL: Final = record_type(
@@ -87,8 +89,7 @@ FRICTION: Final = record_type(  # of flanks and joints: hubs and the pin of a dr
     ("joints", INT),  # 1 if a joint has a radius, so that loads are followed
     ("hubs", INT),  # 1 if a hub has friction that grows with its load
     ("ages", INT),  # 1 if friction of a joint grows with the time at rest
-    ("pinion_rubs", INT),  # 1 if a joint or a law of the pinion has friction
-    ("gear_rubs", INT),  # 1 if a joint of the gear has
+    ("rubs", INT, (2,)),  # 1 if a joint of the shaft has friction
     ("forced", INT),  # 1 if the drive pushes with a pin
     ("holding", INT),  # kinds of dry friction: a sum of values of `gearidae.records.standing.Holding`
     ("even", REAL),  # coefficient of all materials; 0 where they differ, or the law is another [1]
@@ -101,24 +102,7 @@ FRICTION: Final = record_type(  # of flanks and joints: hubs and the pin of a dr
     ("radii", REAL),  # sum of both radii of curvature [pb]
     ("pinion_lever_slope", REAL),  # sigma over the pinion's base radius [1]
     ("gear_lever_slope", REAL),  # sigma over the gear's base radius [1]
-    ("pinion_hub", REAL),  # sliding coefficient times radius of the pinion's hub over its base radius [1]
-    ("gear_hub", REAL),  # the same of the gear [1]
-    ("pin", REAL),  # the same of the pin, over the pinion's base radius [1]
-    ("pinion_constant", REAL),  # torque of adhesion and axial load of the pinion over its base radius [F]
-    ("gear_constant", REAL),  # the same of the gear [F]
-    ("pinion_arm", REAL),  # radius of the pinion's hub over its base radius [1]
-    ("gear_arm", REAL),  # the same of the gear [1]
-    ("pin_arm", REAL),  # radius of the pin joint over the pinion's base radius [1]
-    ("pinion_hold", REAL),  # `pinion_constant` over the coefficient [F]
-    ("gear_hold", REAL),  # the same of the gear [F]
-    ("coefficient", REAL, (3,)),  # sliding, of pinion's hub, gear's hub and pin [1]
-    ("rise", REAL, (3,)),  # of it with the time at rest [1]
-    ("ageing_rate", REAL, (3,)),  # one over the time of that; 0 without a rise [1/tau]
-    (
-        "forgetting",
-        REAL,
-        (3,),
-    ),  # one over the way of the base circle that ends it; 0 without a rise [1/sigma]
+    ("joint", record_type(*JOINT_FIELDS), (len(JOINTS),)),  # by its number
     (
         "pin_cosine",
         REAL,

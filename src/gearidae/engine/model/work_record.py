@@ -232,7 +232,7 @@ ELEMENT: Final = record_type(  # that dry friction may hold at rest
     ("pinion", REAL),  # its speed per surface velocity of the pinion [1]
     ("gear", REAL),  # and of the gear [1]
     ("limit", REAL),  # of its friction, without what grows with the load of a hub [F]
-    ("hub", REAL),  # what its limit grows by with the load of its hub [1]
+    ("by_load", REAL),  # what its limit grows by with the load of its hub [1]
     ("flank", INT),  # 1 for a pair of the coast flank
     ("hold", INT),  # `HELD_PAIR`, `HELD_GEAR` or `HELD_PINION`
     ("history", INT),  # of a pair [index]

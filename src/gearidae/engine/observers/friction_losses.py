@@ -13,7 +13,7 @@ import numpy as np
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine import adams
 from gearidae.engine.compiling import FRICTION
-from gearidae.engine.friction.ageing import JointFriction, joint_friction, joint_friction_rate
+from gearidae.engine.friction.ageing import OfJoints, joint_friction, joint_friction_rate
 from gearidae.engine.friction.forces import Shafts, solve_shafts
 from gearidae.engine.friction.hubs import Loads, Mesh, has_hubs, pin_rate, vector_sum
 from gearidae.engine.friction.pairs import direction, lever_rate, levers, set_limits
@@ -32,6 +32,9 @@ from gearidae.engine.observers.exposures.friction_work import (
 from gearidae.engine.pairs.mesh_error import acceleration_of, error_at
 from gearidae.engine.pairs.tooth_pairs import flank_of_history
 from gearidae.formulas.quadrature import error_estimate, integral, integral_with_middle
+from gearidae.laws.friction_law import slip_of
+from gearidae.laws.joints import SHAFT_OF_JOINT
+from gearidae.laws.law import LOAD
 
 _POWERS: Final = 8
 """Of the drive and the coast flank, of both hubs and the pin; and load times sliding speed of hubs and pin."""
@@ -88,8 +91,8 @@ def note_friction(m: Model, t: float, y: Floats) -> float:
             )
         else:
             load_rate = _load_rate(m, shafts, Mesh(drive, coast, drive_friction, coast_friction), force_rate)
-        joints = joint_friction(m, t, y), joint_friction_rate(m, t, y)
-        _note_joints(m, shafts, joints, load_rate, force_rate, surface_speed, y[W])
+        joints, rates = joint_friction(m, t, y), joint_friction_rate(m, t, y)
+        _note_joints(m, shafts, joints, rates, load_rate, force_rate, (surface_speed, y[W]))
     return float(force)
 
 
@@ -97,45 +100,29 @@ def note_friction(m: Model, t: float, y: Floats) -> float:
 def _note_joints(
     m: Model,
     shafts: Shafts,
-    friction_and_rate: tuple[JointFriction, JointFriction],
+    joints: OfJoints,
+    rates: OfJoints,
     load_rate: Loads,
     force_rate: tuple[float, float],
-    surface_speed: float,
-    w: float,
+    speeds: tuple[float, float],
 ) -> None:
-    """Note the powers of hubs and pin, for the rates of their friction, their loads and the force of the pin."""
-    joints, rate = friction_and_rate
-    friction, pin = m.scene.friction, math.hypot(shafts.pin[0], shafts.pin[1])
-    pin_load_rate = 0.0
+    """Note the powers of the joints, for the rates of their friction, of the hubs' loads and of the pin's force."""
+    pin, pin_rate = math.hypot(shafts.pin[0], shafts.pin[1]), 0.0
     if pin > 0.0:
-        pin_load_rate = (shafts.pin[0] * force_rate[0] + shafts.pin[1] * force_rate[1]) / pin
-    turns, gear_turns = math.copysign(1.0, surface_speed), math.copysign(1.0, w)
-    slip, gear_slip = m.state.pinion_slip, m.state.slip if friction.gear_rubs != 0 else 0.0
-    pinion, gear = joints.pinion_hub * shafts.loads.pinion, joints.gear_hub * shafts.loads.gear
-    pinion_rate = rate.pinion_hub * shafts.loads.pinion + rate.pinion_constant
-    gear_rate = rate.gear_hub * shafts.loads.gear + rate.gear_constant
-    _note(
-        m,
-        2,
-        slip * (pinion + joints.pinion_constant),
-        slip * (joints.pinion_hub * load_rate.pinion + pinion_rate),
-        surface_speed,
-        shafts.pinion,
+        pin_rate = (shafts.pin[0] * force_rate[0] + shafts.pin[1] * force_rate[1]) / pin
+    loads, load_rates = (
+        (shafts.loads.pinion, shafts.loads.gear, pin),
+        (load_rate.pinion, load_rate.gear, pin_rate),
     )
-    _note(
-        m,
-        3,
-        gear_slip * (gear + joints.gear_constant),
-        gear_slip * (joints.gear_hub * load_rate.gear + gear_rate),
-        w,
-        shafts.gear,
-    )
-    pin_friction_rate = joints.pin * pin_load_rate + rate.pin * pin
-    _note(m, 4, slip * joints.pin * pin, slip * pin_friction_rate, surface_speed, shafts.pinion)
-    arms = turns * friction.pinion_arm, gear_turns * friction.gear_arm, turns * friction.pin_arm
-    _note(m, 5, arms[0] * shafts.loads.pinion, arms[0] * load_rate.pinion, surface_speed, shafts.pinion)
-    _note(m, 6, arms[1] * shafts.loads.gear, arms[1] * load_rate.gear, w, shafts.gear)
-    _note(m, 7, arms[2] * pin, arms[2] * pin_load_rate, surface_speed, shafts.pinion)
+    for i in range(len(SHAFT_OF_JOINT)):
+        shaft, load, by_time = SHAFT_OF_JOINT[i], loads[i], load_rates[i]
+        friction, rate, slip = joints[i], rates[i], slip_of(m, shaft)
+        speed, acceleration = speeds[shaft], shafts.gear if shaft == LOAD else shafts.pinion
+        force = slip * (friction.by_load * load + friction.constant)
+        changes = slip * (friction.by_load * by_time + (rate.by_load * load + rate.constant))
+        _note(m, 2 + i, force, changes, speed, acceleration)
+        arm = math.copysign(1.0, speed) * m.scene.friction.joint[i].arm
+        _note(m, _LOSSES + i, arm * load, arm * by_time, speed, acceleration)
 
 
 @compiled(inline=True)
@@ -271,10 +258,8 @@ def _accumulate(m: Model, i: int, loss: float, error: float) -> None:
         return
     if i < 2:
         e.flank_loss[i] += loss
-    elif i < 4:
-        e.hub_loss[i - 2] += loss
     else:
-        e.pin_loss += loss
+        e.joint_loss[i - 2] += loss
     e.loss_error += error
     e.throughput += abs(loss)
 

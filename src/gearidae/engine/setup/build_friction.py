@@ -11,15 +11,15 @@ from gearidae.asperities.area import ContactArea
 from gearidae.asperities.tip import asperity_of
 from gearidae.contact.kernels.energy import loading_pieces
 from gearidae.contact.kernels.law import N_LOADING, Kernel, law_table
-from gearidae.engine.model.record_types import GEAR_HUB, PIN, PINION_HUB
 from gearidae.engine.model.state import DRIVE, LOAD, MATERIALS, Record
 from gearidae.engine.setup.tables import Tables
 from gearidae.laws.frictions import bits_of, friction_laws_of
+from gearidae.laws.joints import JOINTS, PIN
 from gearidae.mesh.involute import Geometry
 from gearidae.records.standing import Holding
 from gearidae.scene import MATERIAL_NAMES, GearScene, Scene, Surface
 from gearidae.scene.friction import friction_values, has_flank_friction
-from gearidae.scene.joints import Joint, has_pin, joints
+from gearidae.scene.joints import has_pin, joints
 
 
 def add_friction(s: Record, scene: GearScene) -> None:
@@ -38,8 +38,8 @@ def add_friction(s: Record, scene: GearScene) -> None:
         for holder in (holder for law in laws for holder in law.holders):
             friction.holding |= holder.number
     # a gear that is held by its own laws alone has a short way, through the motion and at events
-    friction.pinion_rubs = int(s.torque[DRIVE].resists != 0)
-    friction.any_friction = int(friction.joints != 0 or friction.flanks != 0 or friction.pinion_rubs != 0)
+    resists = s.torque[DRIVE].resists != 0
+    friction.any_friction = int(friction.joints != 0 or friction.flanks != 0 or resists)
     friction.may_stick = int(friction.any_friction != 0 or s.torque[LOAD].resists != 0)
     friction.holding |= Holding.FLANK_FRICTION if friction.flanks != 0 else 0
     s.noting = int(scene.run.exposures > 0 or friction.any_friction != 0)
@@ -65,50 +65,29 @@ def add_friction(s: Record, scene: GearScene) -> None:
 
 def _add_joints(s: Record, scene: GearScene, geometry: Geometry) -> None:
     """Set what friction of the joints depends on."""
-    friction = s.friction
-    pinion, gear, force = geometry.base_radius_pinion, geometry.base_radius_gear, float(s.force_unit)
+    friction, force = s.friction, float(s.force_unit)
+    radii, numbers = (geometry.base_radius_pinion, geometry.base_radius_gear), [one.name for one in JOINTS]
     for joint in joints(scene):
-        constant = joint.torque(0.0) / force
-        _add_ageing(s, joint, gear if joint.name == "gear hub" else pinion)
-        if joint.name == "pin":
-            friction.pin, friction.pin_arm = joint.arm / pinion, joint.radius / pinion
-        elif joint.name == "gear hub":
-            friction.gear_hub, friction.gear_arm = joint.arm / gear, joint.radius / gear
-            friction.gear_constant = constant / gear
-            friction.gear_hold = joint.holding_torque / force / gear
-        else:
-            friction.pinion_hub, friction.pinion_arm = joint.arm / pinion, joint.radius / pinion
-            friction.pinion_constant = constant / pinion
-            friction.pinion_hold = joint.holding_torque / force / pinion
+        number = numbers.index(joint.name)
+        shaft = JOINTS[number].shaft
+        base, record = radii[shaft], friction.joint[number]
+        record.by_load, record.arm = joint.arm / base, joint.radius / base
+        record.constant = joint.torque(0.0) / force / base
+        record.hold = joint.holding_torque / force / base
+        record.coefficient, record.rise = joint.coefficient, joint.rise
+        if joint.rise > 0.0:
+            friction.ages, record.ageing_rate = 1, float(s.time_unit) / joint.ageing_time
+            record.forgetting = float(s.length_unit) * joint.sliding_radius / base / joint.memory_length
         friction.holding |= int(joint.holding)
         rubs = int(joint.largest > 0.0)
-        if joint.name != "pin":
-            friction.hubs |= int(rubs != 0 and joint.radius > 0.0)
-        if joint.name == "gear hub":
-            friction.gear_rubs |= rubs
-        else:
-            friction.pinion_rubs |= rubs
+        friction.hubs |= int(number != PIN and rubs != 0 and joint.radius > 0.0)
+        friction.rubs[shaft] |= rubs
     if friction.joints != 0 and has_pin(scene):
         angle = geometry.pressure_angle + scene.drive.orientation
         friction.forced, friction.pin_cosine, friction.pin_sine = (
             1,
             math.cos(angle) / force,
             math.sin(angle) / force,
-        )
-
-
-_JOINTS = {"pinion hub": PINION_HUB, "gear hub": GEAR_HUB, "pin": PIN}
-
-
-def _add_ageing(s: Record, joint: Joint, base_radius: float) -> None:
-    """Set what the coefficient of a joint depends on; ways are on the base circle."""
-    friction, index = s.friction, _JOINTS[joint.name]
-    friction.coefficient[index], friction.rise[index] = joint.coefficient, joint.rise
-    if joint.rise > 0.0:
-        friction.ages = 1
-        friction.ageing_rate[index] = float(s.time_unit) / joint.ageing_time
-        friction.forgetting[index] = (
-            float(s.length_unit) * joint.sliding_radius / base_radius / joint.memory_length
         )
 
 

@@ -6,12 +6,10 @@ accepted time, with the angle of each shaft in place of the way of a base circle
 
 from __future__ import annotations
 
-import math
-
 from gearidae.arrays import Floats
 from gearidae.compiled import compiled
-from gearidae.engine.friction.ageing import later_age
 from gearidae.engine.train.layout import TrainModel
+from gearidae.laws.joint_law import later_age, rise_at
 
 
 @compiled
@@ -37,7 +35,7 @@ def set_joint_friction(tm: TrainModel, t: float, y: Floats) -> None:
         joint = tm.joints[j]
         if joint.rise == 0.0:
             continue
-        joint.friction = joint.fresh - joint.rise * math.expm1(-age_of(tm, j, t, y) * joint.ageing_rate)
+        joint.friction = joint.fresh + rise_at(joint, age_of(tm, j, t, y))
         if j < last:
             shaft = tm.shafts[j]
             shaft.hub_arm, shaft.hub_torque = joint.friction * joint.radius, joint.friction * joint.hold

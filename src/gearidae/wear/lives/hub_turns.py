@@ -12,6 +12,7 @@ import numpy as np
 from gearidae import engine
 from gearidae.arrays import Floats
 from gearidae.errors import SolverError
+from gearidae.laws.joints import JOINTS
 from gearidae.records.train_results import AnySolution, TrainSolution
 from gearidae.runs.running import FAILS, nothing_of, solve_any_to_end, unfinished, unsolved
 from gearidae.runs.starting import end_of_run
@@ -23,11 +24,7 @@ from gearidae.scene.judged import judged_shaft
 if TYPE_CHECKING:
     from gearidae.scene import GearScene
 
-_SUMS: Final = {
-    "pinion hub": "pinion_hub_sliding",
-    "gear hub": "gear_hub_sliding",
-    "pin": "pin_sliding",
-}
+_SUMS: Final = {joint.name: f"{joint.prefix}_sliding" for joint in JOINTS}
 """Joints of a pair, and the totals of a run that say what they have slid."""
 _PATIENCE: Final = 4.0
 """Time that a block gets, over that of its turns at the speed with which it begins."""
