@@ -37,7 +37,8 @@ def usual_pictures(ds: xr.Dataset, kind: str) -> dict[str, str]:
         if swept_dims(ds):
             return {"overview": ""}
         moved = {"train": "The train at the end of the run"} if ds.sizes["time"] else {}
-        return {"work": "Where the work of the drive goes"} | moved
+        works = {"work": "Where the work of the drive goes"} if work_shares(ds) else {}
+        return works | moved or {"overview": ""}
     if kind == "runs":
         sampled = any(name in ds for name in sampled_columns(roller=is_roller(ds)))
         return {"overview" if sampled or not swept_dims(ds) else "outcome": ""}
