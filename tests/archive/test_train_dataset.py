@@ -160,5 +160,26 @@ def test_a_pair_along_shafts_and_meshes():
     assert train["shaft_speed"].attrs["units"] == "rad s-1"
 
 
+def test_the_table_of_a_pair_is_no_run():
+    pair = gd.preset("teodorescu2009").replace({"run.duration": "1 us", "run.samples": 11})
+    table = gd.simulate(pair).gearidae.train()
+    assert table.gearidae.train() is table
+    for asked in (
+        lambda: table.gearidae.verdicts(),
+        lambda: table.gearidae.work(),
+        lambda: gd.plot.train(table),
+    ):
+        with pytest.raises(gd.SceneError, match="give the run of the pair itself"):
+            asked()
+
+
+@pytest.mark.parametrize("part", [{"shaft": "input"}, {"mesh": "first"}, {"shaft": ["input", "idler"]}])
+def test_a_part_of_a_train_is_not_judged(ds, part):
+    some = ds.sel(part)
+    for asked in (lambda: some.gearidae.verdicts(), lambda: gd.analysis.power_spectrum(some)):
+        with pytest.raises(gd.SceneError, match="must have all shafts and meshes here: select in a variable"):
+            asked()
+
+
 def test_a_train_is_in_that_form_already(ds):
     assert ds.gearidae.train() is ds

@@ -46,6 +46,18 @@ def test_check_prints_each_mesh_and_hub(case, capfd):
         assert expected in out
 
 
+def test_check_says_what_a_mesh_has_of_its_own(case, capfd):
+    tables = chain()
+    tables["meshes"]["second"]["coating"] = {"sam_fraction": 0.6}
+    assert main(["check", case(tables)]) == 0
+    assert words(capfd).count("of its own coating.sam_fraction = 0.6") == 1
+
+
+def test_check_of_a_loop_without_torques(case, capfd):
+    assert main(["check", case(split(drive={"torque": 0.0}, load={"torque": 0.0}))]) == 0
+    assert "shared" not in words(capfd)
+
+
 def test_check_says_how_hubs_age(case, capfd):
     tables = chain(hubs=0.2)
     for shaft in tables["shafts"].values():

@@ -139,6 +139,17 @@ def test_studies_of_trains_give_what_python_has(printed):
             assert np.ravel(np.array(values, dtype=object)).tolist() == expected, name
 
 
+def test_a_run_of_a_train_says_where_its_work_goes(printed):
+    train = gd.Scene.from_dict(chain(hubs=0.3)).replace({"run.duration": "1 us", "run.samples": 3})
+    Path("train.toml").write_text(gd.dump_case(train))
+    told = printed("run", "train.toml", "-o", "t.nc")
+    work = gd.open("t.nc").gearidae.work()
+    assert [part["name"] for part in told["work"]] == list(work.index)
+    assert [part["share"] for part in told["work"]] == list(work["share"])
+    assert told["work"][0]["passes"] == gd.open("t.nc")["mesh_efficiency"].values[0]
+    assert told["energy_balance"]["drive_work"] == gd.open("t.nc")["drive_work"].item()
+
+
 def test_every_study_and_table_takes_the_option():
     for command in (*command_help(), "check", "run", "sweep", "info", "assess", "surface", "surfaces"):
         assert "--json" in _options(command), command

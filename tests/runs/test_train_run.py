@@ -100,6 +100,31 @@ def test_an_archive_and_what_is_said_of_it(tmp_path, capfd):
     assert gd.open(tmp_path / "out.nc").attrs["judged_shaft"] == "output"
 
 
+def test_a_run_without_its_balance_has_no_works(tmp_path, capfd):
+    scene = Scene.from_dict(chain()).replace(
+        {"run.balance": False, "run.duration": "1 us", "run.samples": 11}
+    )
+    case = tmp_path / "train.toml"
+    case.write_text(dump_case(scene))
+    assert main(["run", str(case), "-o", str(tmp_path / "out.nc")]) == 0
+    assert "nan" not in capfd.readouterr().out
+    assert main(["plot", str(tmp_path / "out.nc")]) == 0
+    with pytest.raises(gd.SceneError, match="has not followed its balance"):
+        gd.plot.work(gd.open(tmp_path / "out.nc"))
+
+
+def test_a_refused_run_touches_no_archive(tmp_path, monkeypatch):
+    """Whatever the engine refuses is an error of the scene, and no full disk."""
+
+    def refuses(*_, **__):
+        raise gd.SceneError("drive.law.name", "mine", "does not compile")
+
+    monkeypatch.setattr("gearidae.engine.train.solve_train", refuses)
+    with pytest.raises(gd.SceneError, match=r"^drive\.law\.name = mine"):
+        gd.simulate(Scene.from_dict(chain()), archive=tmp_path / "out.nc")
+    assert not [path for path in tmp_path.iterdir() if path.name.startswith("out")]
+
+
 def test_what_trains_do_not_have_is_refused():
     scene = Scene.from_dict(chain())
     with pytest.raises(gd.SceneError, match="needs the archive to go on from"):

@@ -63,6 +63,29 @@ def test_forces_of_a_loop_that_are_not_found_are_no_numbers(monkeypatch):
         mesh_forces(Scene.from_dict(split()))
 
 
+def test_forces_of_a_loop_that_adhesion_presses_are_found():
+    """Bare teeth that an offset sets against each other: thousands of times the drive's force, of which rounding is."""
+    tables = split(
+        coating={"sam_fraction": 0.0, "energy": 0.02}, contact={"bodies": "rigid", "asperity": "jkr"}
+    )
+    tables["surface"] |= {
+        "youngs_modulus": "53 GPa",
+        "roughness": "2.2 nm",
+        "asperity_density": "278 / um^2",
+        "asperity_radius": "280 nm",
+    }
+    tables["meshes"]["two"]["offset"] = "-3.2 nm"
+    torque = 1e-12
+    tables["load"], tables["drive"] = {"torque": 0.0}, {"torque": torque}
+    scene = Scene.from_dict(tables)
+    forces, radius = mesh_forces(scene), scene.train.meshes[0].geometry.base_radius_pinion
+    assert np.abs(forces).max() > 1000.0 * torque / radius
+    # the inertia of the train takes the torque, that of the input its part of it
+    inertia = np.array([shaft.inertia * float(shaft.ratio) ** 2 for shaft in scene.train.shafts])
+    passed_on = torque * inertia[1:].sum() / inertia.sum()
+    assert (forces[0] + forces[1]) * radius == pytest.approx(passed_on, rel=1e-6, abs=0.0)
+
+
 def test_a_loop_without_torques_carries_nothing():
     still = Scene.from_dict(split()).replace({"drive": {"torque": 0.0}, "load": None})
     assert mesh_forces(still).tolist() == [0.0] * 4

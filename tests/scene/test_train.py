@@ -100,6 +100,18 @@ def test_the_order_of_the_tables_does_not_matter():
                 assert there.centre == pytest.approx(shaft.centre, abs=1e-17)
 
 
+def test_a_mesh_without_an_angle_closes_its_loop_wherever_it_is_listed():
+    tables = split()
+    tables["meshes"]["one"]["phase"] = 0.3
+    first = scene_of(tables).train
+    for meshes in permutations(tables["meshes"]):
+        other = scene_of(tables | {"meshes": {name: tables["meshes"][name] for name in meshes}}).train
+        assert [mesh.name for mesh in other.meshes if mesh.closes] == ["four"]
+        for mesh in first.meshes:
+            assert other.mesh(mesh.name).angle == pytest.approx(mesh.angle, abs=1e-12)
+            assert other.mesh(mesh.name).phase == pytest.approx(mesh.phase, abs=1e-12)
+
+
 def test_gears_of_one_shaft_are_mounted_at_any_angle():
     """So that their phases are free; and a reduction has the product of its ratios."""
     tables = compound()
@@ -152,7 +164,7 @@ REFUSED = {
     ),
     "a loop of an odd number": (
         with_mesh(driver="input", driven="output"),
-        r"^meshes\.second = .*: the loop .* has an odd number of meshes \(3\), and cannot turn",
+        r"^meshes\.third = .*: the loop .* has an odd number of meshes \(3\), and cannot turn",
     ),
     "two ratios": (
         changed(
@@ -171,6 +183,26 @@ REFUSED = {
             driven="output",
         ),
         r"cannot turn",
+    ),
+    "two meshes of the same gears": (
+        with_mesh(driver="input", driven="idler"),
+        r"^meshes\.third\.driven = idler: meets input in meshes\.first already",
+    ),
+    "a load on the shaft of the drive": (
+        chain(load={"shaft": "input"}),
+        r"^load\.shaft = input: must be a shaft that a mesh drives",
+    ),
+    "an offset beyond the backlash": (
+        changed(chain(), "meshes", "first", offset="2 um"),
+        r"^meshes\.first\.offset = 2e-06: with it initial\.gap must lie in",
+    ),
+    "teeth that stand too far back": (
+        changed(chain(), "meshes", "first", pitch_error_rms="1 um"),
+        r"^meshes\.first\.pitch_error_rms = \(tooth .*\): has an error of .* m on input: must be",
+    ),
+    "keys of a run": (
+        chain(run={"duration": "1 us", "impacts": True}),
+        r"^run\.impacts = True: cannot be combined with several meshes",
     ),
     "centres that do not fit": (
         split((0.9, 0.4)),
@@ -305,6 +337,39 @@ def test_keys_of_shafts_and_meshes_are_replaced():
     assert scene_of(compound()).replace({"shafts.first.gears.wheel": 95}).train.shafts[3].ratio == Fraction(
         1, 60
     )
+
+
+def test_shafts_and_meshes_are_added_and_taken_away():
+    scene = scene_of(chain())
+    longer = scene.replace(
+        {
+            "shafts.last": {"teeth": 19, "inertia": 1e-20},
+            "meshes.third": {"driver": "output", "driven": "last"},
+        }
+    )
+    assert longer.train.shafts[3].ratio == 1
+    assert longer.replace({"shafts.last": None, "meshes.third": None}) == scene
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"shafts.output": None}, r"^meshes\.second\.driven = output: must be one of input, idler"),
+        ({"meshes.fourth": None}, r"no such table or entry to change; in meshes there are first, second"),
+        (
+            {"shafts.idle.inertia": 1e-20},
+            r"^shafts\.idle\.inertia = .*; in shafts there are input, idler, output",
+        ),
+        (
+            {"shafts.input.spring": 1e-7},
+            r"^shafts\.input\.spring = 1e-07: unknown key; known are inertia, density",
+        ),
+        ({"shafts.input.inertai": 1e-20}, r"did you mean shafts\.input\.inertia\?"),
+    ],
+)
+def test_changes_of_what_is_not_there_say_what_there_is(changes, said):
+    with pytest.raises(gd.SceneError, match=said):
+        scene_of(chain()).replace(changes)
 
 
 @pytest.mark.parametrize("tables", [chain(), split(), compound()], ids=["chain", "split", "compound"])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -58,9 +58,42 @@ def is_roller(ds: xr.Dataset) -> bool:
     return scene_of(ds).get("roller") is not None
 
 
+TABLE_OF_PAIR: Final = "pair along shaft and mesh"
+"""Attribute ``form`` of the table that `gearidae.archive.train.train_form` makes of a pair."""
+
+
 def is_train(ds: xr.Dataset) -> bool:
-    """Whether a dataset is of a train of several meshes."""
+    """Whether a dataset is of a train of several meshes.
+
+    Raises
+    ------
+    SceneError
+        If it is a pair's table along shafts and meshes, which is no run.
+    """
+    if ds.attrs.get("form") == TABLE_OF_PAIR:
+        allowed = (
+            "is a table to compare with trains, from ds.gearidae.train(): give the run of the pair itself"
+        )
+        raise SceneError("dataset", f"({TABLE_OF_PAIR})", allowed)
     return "shaft" in ds.dims and "mesh" in ds.dims
+
+
+def refuse_parts(ds: xr.Dataset) -> None:
+    """Refuse a run of a train of which some shafts or meshes are selected: it is judged and drawn as a whole.
+
+    Raises
+    ------
+    SceneError
+        Saying how to select.
+    """
+    scene = scene_of(ds) if "judged_shaft" in ds.attrs else {}
+    for dim, table, variable in (("shaft", "shafts", "shaft_speed"), ("mesh", "meshes", "mesh_force")):
+        if dim in ds.coords and ds.sizes.get(dim, 1) < len(scene.get(table, ())):
+            names = ", ".join(map(str, ds[dim].values.ravel()))
+            allowed = (
+                f"must have all shafts and meshes here: select in a variable, as ds.{variable}.sel({dim}=...)"
+            )
+            raise SceneError("dataset", f"({dim} {names} alone)", allowed)
 
 
 def refuse_train(ds: xr.Dataset) -> None:

@@ -15,7 +15,7 @@ import xarray as xr
 from gearidae.archive.run_summary import counted_over, summary_of
 from gearidae.archive.select import is_train
 from gearidae.archive.totals import balance_of, imbalance
-from gearidae.archive.train import work_shares
+from gearidae.archive.train import passed_on, work_shares
 from gearidae.records.energy import LOSSES, TERMS
 from gearidae.scene.prefixes import with_prefix
 
@@ -80,14 +80,11 @@ def _summary_rows(kept: dict[str, Any]) -> Iterator[tuple[str, Row]]:
 
 def _work_rows(ds: xr.Dataset) -> Iterator[Row]:
     """Where the work of a train's drive goes, part by part; the shares add up to 1."""
+    if not (shares := work_shares(ds)):
+        return
     yield "Work of the drive", with_prefix(float(ds["drive_work"]), "J", 5), "share of it"
-    efficiency = {
-        f"mesh {m}": e for m, e in zip(ds["mesh"].values, ds["mesh_efficiency"].values, strict=True)
-    }
-    efficiency |= {
-        f"hub of {s}": e for s, e in zip(ds["shaft"].values, ds["hub_efficiency"].values, strict=True)
-    }
-    for name, energy, share in work_shares(ds):
+    efficiency = passed_on(ds)
+    for name, energy, share in shares:
         passes = efficiency.get(name, math.nan)
         words = "" if math.isnan(passes) else f"; passes {100.0 * passes:.4g} % of what arrives"
         yield name, with_prefix(energy, "J", 4), f"{100.0 * share:.3g} %{words}"

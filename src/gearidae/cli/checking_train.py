@@ -21,6 +21,7 @@ from gearidae.runs.train_statics import (
     starting_torque,
     steady_speed,
 )
+from gearidae.scene.group import shorten
 from gearidae.scene.joints import ages, train_pin
 from gearidae.scene.train_pair import rubbing_mesh
 
@@ -73,6 +74,13 @@ def _mesh(scene: TrainScene, mesh: TrainMesh, force: float) -> Facts:
     yield Fact(
         "phase", f"{mesh.phase:.10g}", f"of {geometry.base_pitch * 1e6:.5g} um; {where}", mesh.phase, "1"
     )
+    own = [
+        f"{table}.{key} = {shorten(value)}"
+        for table in ("coating", "surface")
+        for key, value in scene.meshes[mesh.name].own(table).items()
+    ]
+    if own:
+        yield Fact("of its own", ", ".join(own), "in place of what Contact says below")
     yield Fact("force", f"{force * 1e6:.4g} uN", "under the mean drive", force, "N")
     gap = contact.resting_gap(force)
     if not math.isnan(gap):
@@ -107,8 +115,8 @@ def _loops(scene: TrainScene, forces: Floats) -> Facts:
         yield Fact("loop", text, words, mesh.residual, "1")
     for number, shaft in enumerate(train.shafts):
         driving = [k for k, mesh in enumerate(train.meshes) if mesh.b == number]
-        if len(driving) > 1:
-            torques = [float(forces[k]) * train.meshes[k].geometry.base_radius_gear for k in driving]
+        torques = [float(forces[k]) * train.meshes[k].geometry.base_radius_gear for k in driving]
+        if len(driving) > 1 and sum(torques) != 0.0:
             shares = tuple(torque / sum(torques) for torque in torques)
             text = ", ".join(
                 f"{train.meshes[k].name} {100.0 * share:.4g} %"

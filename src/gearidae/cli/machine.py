@@ -14,9 +14,10 @@ import numpy as np
 from gearidae.analysis.verdict import outcomes
 from gearidae.archive.journal import file_of
 from gearidae.archive.run_summary import summary_of
-from gearidae.archive.select import scene_of, swept_dims
+from gearidae.archive.select import is_train, scene_of, swept_dims
 from gearidae.archive.tables import row_table
 from gearidae.archive.totals import energy_balance
+from gearidae.archive.train import judged_view, passed_on, work_shares
 from gearidae.citing import cite
 from gearidae.cli.output import print_answer
 from gearidae.records import Impacts
@@ -56,11 +57,18 @@ def archive_facts(archive: Path, ds: xr.Dataset) -> dict[str, Any]:
         "outcomes": [{**asdict(outcome), "words": outcome.words} for outcome in outcomes(ds)],
         **({"impacts": _impacts(ds)} if Impacts.dim in ds.dims else {}),
         "run_summary": summary and summary.as_plain(),
-        "energy_balance": energy_balance(ds),
+        "energy_balance": energy_balance(judged_view(ds)),
+        **({"work": _work(ds)} if is_train(ds) and not swept_dims(ds) else {}),
         "limits": [asdict(row) for row in validity_of(ds)],
         "references": cite(ds).splitlines(),
         "scene": scene_of(ds),
     }
+
+
+def _work(ds: xr.Dataset) -> list[dict[str, Any]]:
+    """Where the work of a train's drive goes, with what each mesh and hub passes on."""
+    passes = passed_on(ds)
+    return [{**share._asdict(), "passes": passes.get(share.name)} for share in work_shares(ds)]
 
 
 def _impacts(ds: xr.Dataset) -> list[dict[str, Any]]:

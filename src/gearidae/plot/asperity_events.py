@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from gearidae.archive.select import run_scene, swept_dims
+from gearidae.archive.select import is_train, run_scene, swept_dims
 from gearidae.archive.select import runs as single_runs
 from gearidae.archive.train import judged_view
 from gearidae.arrays import Floats
@@ -54,6 +54,7 @@ def asperity_events(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
         raise SceneError(
             "dataset", f"runs along {dims[0]}", "must be a single run: select one, as --select does"
         )
+    of_mesh = f" of mesh {ds.attrs['judged_mesh']}" if is_train(ds) else ""
     ds = judged_view(ds)
     run = next(run for _, run in single_runs(ds))
     scene = run_scene(run)
@@ -88,7 +89,7 @@ def asperity_events(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
         )
     tidy(ax)
     ax.set_xlabel(f"time ({across.unit})")
-    ax.set_ylabel(f"force of the contacts ({up.unit})")
+    ax.set_ylabel(f"force of the contacts{of_mesh} ({up.unit})")
     ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, frameon=False, fontsize="small")
     return ax
 

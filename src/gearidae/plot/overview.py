@@ -7,6 +7,7 @@ from matplotlib.figure import Figure, SubFigure
 
 from gearidae.archive.select import is_roller, is_train, scene_of, swept_dims
 from gearidae.archive.specimen import specimen_label
+from gearidae.archive.train import work_shares
 from gearidae.archive.value_text import coverage_text
 from gearidae.archive.variables import SAM_FRACTION
 from gearidae.drawing.picture import new_picture
@@ -36,7 +37,8 @@ def usual_pictures(ds: xr.Dataset, kind: str) -> dict[str, str]:
         if swept_dims(ds):
             return {"overview": ""}
         moved = {"train": "The train at the end of the run"} if ds.sizes["time"] else {}
-        return {"work": "Where the work of the drive goes"} | moved
+        works = {"work": "Where the work of the drive goes"} if work_shares(ds) else {}
+        return works | moved or {"overview": ""}
     if kind == "runs":
         sampled = any(name in ds for name in sampled_columns(roller=is_roller(ds)))
         return {"overview" if sampled or not swept_dims(ds) else "outcome": ""}
@@ -83,7 +85,7 @@ def overview(ds: xr.Dataset, *, figure: Figure | SubFigure | None = None) -> Fig
 
 
 def _train_overview(ds: xr.Dataset, figure: Figure | SubFigure | None) -> Figure | SubFigure:
-    single = not swept_dims(ds)
+    single = not swept_dims(ds) and bool(work_shares(ds))
     figure = figure or new_picture((7.6, 6.4 if single else 3.6), panels=True, layout="constrained")
     top, *bottom = figure.subplots(1 + single, 1, squeeze=False)[:, 0]
     gear_speed(ds, top)

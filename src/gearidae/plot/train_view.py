@@ -16,7 +16,7 @@ from matplotlib.text import Annotation
 from numpy.typing import ArrayLike
 
 from gearidae.archive.pieces import reached
-from gearidae.archive.select import is_train, run_scene, single_run
+from gearidae.archive.select import is_train, refuse_parts, run_scene, single_run
 from gearidae.arrays import Floats
 from gearidae.drawing.picture import new_picture
 from gearidae.drawing.style import NEGATIVE, POSITIVE, quantity_text
@@ -109,6 +109,7 @@ def train_run(ds: xr.Dataset) -> xr.Dataset:
         )
     ds = single_run(ds)
     run_scene(ds)  # refuses several runs
+    refuse_parts(ds)
     for name in _SAMPLES:
         if name not in ds or not ds.sizes["time"]:
             raise SceneError("dataset", name, "the dataset has no samples of it")

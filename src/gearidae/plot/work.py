@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from gearidae.archive.train import work_shares
 from gearidae.drawing.style import line_colour, new_axes, tidy
+from gearidae.errors import SceneError
 from gearidae.scene.prefixes import with_prefix
 
 if TYPE_CHECKING:
@@ -34,6 +35,10 @@ def work(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
         If it is something else.
     """
     shares = work_shares(ds)
+    if not shares:
+        raise SceneError(
+            "plot", "work", "has no works: the run has not followed its balance (run.balance = false)"
+        )
     ax = new_axes(ax, height=1.2 + 0.3 * len(shares))
     colours = {"mesh": 1, "hub": 2, "drags": 3}
     for row, (name, energy, share) in enumerate(shares):

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from gearidae.archive.pieces import reached
-from gearidae.archive.select import run_scene, runs
+from gearidae.archive.select import refuse_parts, run_scene, runs
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.plot.train_shape import PlacedGear, pitch_point
@@ -50,6 +50,7 @@ def pack_trains(ds: xr.Dataset, most_values: int) -> dict[str, Any]:
     SceneError
         If the dataset has no samples.
     """
+    refuse_parts(ds)
     samples = _samples(ds)
     ds = ascending(ds).isel(time=slice(samples))
     members = [run for _, run in runs(ds)]

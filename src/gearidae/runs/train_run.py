@@ -130,12 +130,19 @@ def _stream(
                 journal.flush()
                 if ds.attrs["status"] == "interrupted":
                     raise KeyboardInterrupt
+            try:
                 save(ds, target, overwrite=True, compress=compress)
+            except SceneError as error:
+                raise DiskError(str(error)) from error
         except KeyboardInterrupt:
             kept = f"the run up to there is in {target}; go on with --resume (resume=True)"
             raise Interrupted(kept, left_of(target)) from None
-        except (DiskError, SceneError) as error:
+        except DiskError as error:
             raise _not_written(left_of(target), target, error, FREE_SPACE) from error
+        except SceneError:
+            if not journal.blocks():
+                drop(beside)  # refused before its first step
+            raise
     drop(beside)
     return _ended(open_archive(target))
 

@@ -34,7 +34,9 @@ _NEWTON: Final = 200
 _LONGEST: Final = 0.5
 """Longest step of Newton's iteration in roughnesses: the force of a contact grows e-fold over a quarter of one."""
 _BALANCED: Final = 1e-12
-"""Error of the balance over the drive's torque at which the iteration ends."""
+"""Error of the balance, over the torques that it is the sum of, at which the iteration ends.
+
+Teeth that adhere may press each other in a loop with thousands of times what the drive gives: rounding is theirs."""
 
 
 def ratios(train: Train) -> Floats:
@@ -161,7 +163,8 @@ def _shared(scene: TrainScene, arms: Floats, outside: Floats, torque: float) -> 
         errors = arms @ angles - offset
         forces, stiffness = np.array([c.force(u) for c, u in zip(contacts, errors, strict=True)]).T
         left = outside - arms.T @ forces
-        if np.abs(left).max() <= _BALANCED * abs(torque):
+        parts = np.abs(arms).T @ np.abs(forces)
+        if np.abs(left).max() <= _BALANCED * max(abs(torque), float(parts.max())):
             return np.asarray(forces)
         change = np.linalg.lstsq(arms.T @ (stiffness[:, None] * arms), left, rcond=1e-14)[0]
         step = np.abs(arms @ change) / sigma

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from copy import deepcopy
 from dataclasses import dataclass
 from functools import cache
@@ -82,6 +82,8 @@ def find_key(model: type[Group], key: str, value: object = "(key)") -> KeyInfo:
         return info
     if plain not in known:
         names = plain != key and NAME in plain.split(".")
+        if names and plain.count(".") == 1:
+            raise SceneError(key, shorten(value), "is a table and no key: name one of its keys")
         alike = [name for name in known if (NAME in name.split(".")) == names]
         said = _unknown(plain if names else key, [*alike, *model.model_fields])
         raise SceneError(
@@ -157,6 +159,9 @@ def put(model: type[Group], data: dict[str, Any], key: str, value: object) -> No
         except RecursionError:
             raise SceneError(key, shorten(value), "is nested too deeply") from None
         return
+    if isinstance(key, str) and _is_own_table(model, key):
+        _put_own_table(data, key, value)
+        return
     info = find_key(model, key, value)
     *path, last = key.split(".")
     inside: Any = data
@@ -176,7 +181,42 @@ def put(model: type[Group], data: dict[str, Any], key: str, value: object) -> No
     elif isinstance(inside, list) and _entry(inside, last) is not None:
         inside[int(last)] = value
     else:
-        raise SceneError(key, shorten(value), "this scene has no such table or entry to change")
+        raise SceneError(key, shorten(value), _nothing_there(data, key))
+
+
+def _is_own_table(model: type[Group], key: str) -> bool:
+    """Whether a key names a whole table by a name of the user's own, as ``shafts.idler``."""
+    table, _, name = key.partition(".")
+    field = model.model_fields.get(table)
+    return bool(name) and "." not in name and field is not None and _named(field.annotation) is not None
+
+
+def _put_own_table(data: dict[str, Any], key: str, value: object) -> None:
+    """Set, add or take away one table of a train."""
+    table, _, name = key.partition(".")
+    tables = data.get(table)
+    if not isinstance(tables, dict) or (value is None and name not in tables):
+        raise SceneError(key, shorten(value), _nothing_there(data, key))
+    if value is None:
+        del tables[name]
+    else:
+        tables[name] = deepcopy(value) if isinstance(value, dict) else value
+
+
+def _nothing_there(data: Mapping[str, Any], key: str) -> str:
+    """Say that a scene lacks what a key is to change, and what it has where the key leads nowhere."""
+    inside: Any = data
+    there = "the scene"
+    for part in key.split("."):
+        if not isinstance(inside, Mapping) or part not in inside:
+            break
+        inside, there = inside[part], part if there == "the scene" else f"{there}.{part}"
+    words = "this scene has no such table or entry to change"
+    return (
+        f"{words}; in {there} there are {', '.join(map(str, inside))}"
+        if isinstance(inside, Mapping)
+        else words
+    )
 
 
 def scene_value(scene: Scene, key: str) -> Any:
@@ -270,7 +310,15 @@ def _unknown(key: str, known: list[str]) -> str:
     alike = [name for name in known if name.rpartition(".")[2] == last]
     tables = difflib.get_close_matches(key.rpartition(".")[0], {name.rpartition(".")[0] for name in alike})
     homes = " or ".join(name for name in alike if not tables or name.rpartition(".")[0] in tables)
-    question = f"did you mean {homes}?" if homes else did_you_mean(key, known)
+    within = key.rpartition(".")[0]
+    beside = [name.rpartition(".")[2] for name in known if within and name.rpartition(".")[0] == within]
+    if homes:
+        question = f"did you mean {homes}?"
+    elif beside:  # the table is right: no key of another is meant, however alike the whole words are
+        meant = did_you_mean(last, beside)
+        question = meant.replace("mean ", f"mean {within}.") if meant else f"known are {', '.join(beside)}"
+    else:
+        question = did_you_mean(key, known)
     if number:
         question = question.replace(f"{table}.", f"{table}.{number}.")
     return f"unknown key; {question or 'gearidae.scene.describe_keys() lists them'}"

@@ -26,7 +26,6 @@ from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.scene.carried import numbers_of
 from gearidae.scene.coating_table import met_teeth
-from gearidae.scene.group import shorten
 from gearidae.scene.quantity import Quantity
 from gearidae.scene.table_head import open_table
 from gearidae.scene.text_table import listed, split_unit
@@ -276,11 +275,9 @@ def check_pitch_errors(scene: GearScene) -> None:
             )
         worst = int(np.abs(errors).argmax())
         if abs(errors[worst]) > mesh.backlash:
-            raise SceneError(
-                own if keys else drawn,
-                shorten(float(errors[worst])),
-                f"tooth {worst} of the {name}: must be at most the backlash, {mesh.backlash:.4g} m",
-            )
+            error = f"has an error of {errors[worst]:.4g} m on the {name}"
+            allowed = f"{error}: must be at most the backlash, {mesh.backlash:.4g} m"
+            raise SceneError(own if keys else drawn, f"(tooth {worst})", allowed)
     (low, high), (coast_low, coast_high) = extreme_sums(scene)
     spread = max(high, coast_high) - min(low, coast_low)
     if spread >= mesh.backlash:

@@ -242,7 +242,7 @@ def train_of(scene: Scene) -> Train:
     bare = [_mesh(scene, number, name, teeth, home) for number, name in enumerate(meshes)]
     _check_direction(list(shafts), bare, drive)
     _check_sizes(bare)
-    placements, tree = _walk(list(shafts), bare, drive)
+    placements, tree = _walk(bare, [meshes[mesh.name].angle is None for mesh in bare], drive)
     loops = _check_loops(list(shafts), bare, placements, tree, drive)
     placed = _with_angles(bare, meshes, placements, tree)
     placed = with_phases(
@@ -393,7 +393,12 @@ def _check_direction(names: Sequence[str], meshes: Sequence[TrainMesh], drive: i
 
 
 def _check_sizes(meshes: Sequence[TrainMesh]) -> None:
-    """Let every gear have one base radius and one pressure angle in all of its meshes."""
+    """Let every gear have one base radius and one pressure angle in all of its meshes, and meet another once."""
+    for number, mesh in enumerate(meshes):
+        for first in meshes[:number]:
+            if (first.driver, first.driven) == (mesh.driver, mesh.driven):
+                reason = f"meets {mesh.driver} in meshes.{first.name} already: two gears have one mesh"
+                raise SceneError(f"meshes.{mesh.name}.driven", mesh.driven, reason)
     sizes: dict[str, tuple[str, float, float]] = {}
     for mesh in meshes:
         geometry = mesh.geometry
@@ -414,8 +419,12 @@ def _check_sizes(meshes: Sequence[TrainMesh]) -> None:
 Placements = dict[int, tuple[int, Fraction, tuple[float, float]]]
 
 
-def _walk(names: Sequence[str], meshes: Sequence[TrainMesh], drive: int) -> tuple[Placements, dict[int, int]]:
+def _walk(
+    meshes: Sequence[TrainMesh], without_angle: Sequence[bool], drive: int
+) -> tuple[Placements, dict[int, int]]:
     """Walk a spanning tree from the drive.
+
+    A mesh without an angle of its own is the last that is taken, so that it closes its loop wherever it is listed.
 
     Returns
     -------
@@ -426,17 +435,18 @@ def _walk(names: Sequence[str], meshes: Sequence[TrainMesh], drive: int) -> tupl
     """
     placements: Placements = {drive: (1, Fraction(1), (0.0, 0.0))}
     tree: dict[int, int] = {}
-    queue = [drive]
-    for shaft in queue:
-        sense, ratio, centre = placements[shaft]
-        for number, mesh in enumerate(meshes):
-            if mesh.a == shaft and mesh.b not in placements:
-                away = _distance(mesh)
-                there = (centre[0] + away * math.cos(mesh.angle), centre[1] + away * math.sin(mesh.angle))
-                placements[mesh.b] = (-sense, ratio / mesh.ratio, there)
-                tree[mesh.b] = number
-                queue.append(mesh.b)
-    return placements, tree
+    while True:
+        order = list(placements)
+        ahead = [k for k, mesh in enumerate(meshes) if mesh.a in placements and mesh.b not in placements]
+        if not ahead:
+            return placements, tree
+        number = min(ahead, key=lambda k: (without_angle[k], order.index(meshes[k].a), k))
+        mesh = meshes[number]
+        sense, ratio, centre = placements[mesh.a]
+        away = _distance(mesh)
+        there = (centre[0] + away * math.cos(mesh.angle), centre[1] + away * math.sin(mesh.angle))
+        placements[mesh.b] = (-sense, ratio / mesh.ratio, there)
+        tree[mesh.b] = number
 
 
 def _distance(mesh: TrainMesh) -> float:

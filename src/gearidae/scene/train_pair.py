@@ -56,8 +56,14 @@ def pair_of(scene: TrainScene, name: str) -> GearScene:
             run=scene.run.model_copy(update={"judged": None}),
         )
     except SceneError as error:
-        key = _train_key(mesh, error.key, [*scene.shafts], scene.meshes[name].own("contact"))
-        raise SceneError(key, error.value, error.allowed) from error
+        key, value = (
+            _train_key(mesh, error.key, [*scene.shafts], scene.meshes[name].own("contact")),
+            error.value,
+        )
+        allowed = error.allowed.replace("the pinion", mesh.driver).replace("the gear", mesh.driven)
+        if key == "initial.gap" and mesh.offset != 0.0:
+            key, value, allowed = f"meshes.{name}.offset", mesh.offset, f"with it initial.gap {allowed}"
+        raise SceneError(key, value, allowed) from error
 
 
 def _teeth(mesh: TrainMesh) -> dict[str, Any]:
@@ -148,16 +154,28 @@ def check_train(scene: TrainScene) -> None:
     if len(pairs) == 1:
         return
     check_train_joints(scene)
-    contact, run = scene.contact, scene.run
-    refused: list[tuple[bool, str, Any, str]] = [
+    train, contact, run = scene.train, scene.contact, scene.run
+    if all(mesh.b != train.load for mesh in train.meshes):
+        raise SceneError("load.shaft", train.shafts[train.load].name, "must be a shaft that a mesh drives")
+    refused = (
+        (contact.bodies == "elastic", "contact.bodies", "their nodes are laid out for one mesh"),
+        (run.exposures > 0, "run.exposures", "exposures are tables of one mesh"),
+        (run.stop == "sticks", "run.stop", "each of its shafts may stick"),
+        (run.impacts, "run.impacts", "impacts are a table of one mesh"),
         (
-            contact.bodies == "elastic",
-            "contact.bodies",
-            contact.bodies,
-            "their nodes are laid out for one mesh",
+            run.method != "auto",
+            "run.method",
+            "a train has a formula of its own; another driver may be chosen",
         ),
-        (run.exposures > 0, "run.exposures", run.exposures, "exposures are tables of one mesh"),
-    ]
-    for there, key, value, reason in refused:
+        (
+            run.samples == "ringing",
+            "run.samples",
+            "how its contacts ring is not known before: samples must be a number or a rate",
+        ),
+        (bool(run.checkpoints), "run.checkpoints", "its checkpoints are where its blocks end"),
+    )
+    for there, key, reason in refused:
         if there:
+            table, name = key.split(".")
+            value = getattr(getattr(scene, table), name)
             raise SceneError(key, value, f"cannot be combined with several meshes: {reason}")

@@ -6,6 +6,7 @@ left of the motion, and that all events are the same.
 
 from __future__ import annotations
 
+import json
 from functools import cache
 
 import numpy as np
@@ -14,6 +15,7 @@ from tests.mesh.test_slow_train import idle
 from tests.reference.trains import chain, split
 
 import gearidae as gd
+from gearidae.archive.specimen import has_seeds, specimen_label, specimen_note
 from gearidae.engine import solve
 from gearidae.engine.train import end_of_train, solve_train
 from gearidae.engine.train import solve as solving
@@ -404,10 +406,21 @@ def test_events_of_single_asperities_can_be_left_out(ds):
 
 def test_a_picture_shows_the_asperities_of_the_judged_mesh(ds):
     judged = ds.attrs["judged_mesh"]
-    labels = [text.get_text() for text in gd.plot.asperity_events(ds).get_legend().get_texts()]
+    ax = gd.plot.asperity_events(ds)
+    assert f"of mesh {judged}" in ax.get_ylabel()
+    labels = [text.get_text() for text in ax.get_legend().get_texts()]
     counts = [int(label[label.index("(") + 1 : -1]) for label in labels]
     own = ds["event_mesh"].values == ds["mesh"].values.tolist().index(judged)
     assert sum(counts) == ((ds["event_asperity"].values >= 0) & own).sum()
+
+
+def test_a_run_is_one_specimen_of_its_train(ds):
+    assert "another contact.seed is another train" in specimen_note(ds)
+    assert specimen_label(ds).startswith("one specimen, seed")
+    own = json.loads(ds.attrs["scene"])
+    own["meshes"]["second"]["contact"] = {"seed": 4}
+    assert specimen_label(ds.assign_attrs(scene=json.dumps(own))) == "one specimen"
+    assert has_seeds(ds.assign_attrs(swept=json.dumps({"meshes.second.contact.seed": "seed"})))
 
 
 def test_seeds_of_an_ensemble_are_other_trains():

@@ -289,6 +289,26 @@ def test_an_interrupted_run_is_resumed_from_its_journal(tmp_path, monkeypatch, b
 
 
 @pytest.mark.usefixtures("small_blocks")
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize("stop", ["time", "turns 1e-4"])
+def test_a_run_that_is_interrupted_behind_its_last_block_is_whole(tmp_path, monkeypatch, backend, stop):
+    monkeypatch.setattr(train_journal, "CHECKPOINT_SECONDS", 0.0)
+    monkeypatch.setattr(train_journal, "CHECKPOINT_SHARE", 0.0)
+    scene, path = scene_of(chain(), 1e-6, **{"run.stop": stop}), tmp_path / "run.nc"
+    whole = gd.simulate(scene, backend=backend)
+    end = float(whole["reached"])
+    assert (end < 1e-6) == (stop != "time")
+
+    def interrupt(block):
+        if block.time == end:
+            raise KeyboardInterrupt
+
+    with pytest.raises(Interrupted):
+        gd.simulate(scene, backend=backend, archive=path, on_block=interrupt)
+    assert_same(whole, gd.simulate(scene, archive=path, resume=True))
+
+
+@pytest.mark.usefixtures("small_blocks")
 def test_a_journal_that_is_cut_or_altered_goes_on_or_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(train_journal, "CHECKPOINT_SECONDS", 0.0)
     monkeypatch.setattr(train_journal, "CHECKPOINT_SHARE", 0.0)

@@ -2,6 +2,6 @@
 
 from gearidae.archive.train.dataset import train_dataset
 from gearidae.archive.train.view import judged_view, train_form
-from gearidae.archive.train.work import Share, work_shares
+from gearidae.archive.train.work import Share, passed_on, work_shares
 
-__all__ = ["Share", "judged_view", "train_dataset", "train_form", "work_shares"]
+__all__ = ["Share", "judged_view", "passed_on", "train_dataset", "train_form", "work_shares"]

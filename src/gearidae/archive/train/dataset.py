@@ -117,7 +117,9 @@ def train_dataset(
             "message": solution.message,
             **statistics_attributes([solution.statistics]),
             "contact_bodies": "rigid",
-            "contact_bodies_reason": "of several meshes",
+            "contact_bodies_reason": (
+                "auto stays rigid: of several meshes" if scene.contact.bodies == "auto" else ""
+            ),
             "contact_roughness": scene.contact.roughness,
             **_digests(scene),
             "judged_shaft": scene.train.shafts[judged_shaft(scene)].name,

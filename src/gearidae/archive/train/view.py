@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import xarray as xr
 
-from gearidae.archive.select import is_train, run_scene
+from gearidae.archive.select import TABLE_OF_PAIR, is_train, refuse_parts, run_scene
 from gearidae.archive.train.dataset import coordinates
 from gearidae.archive.train.variables import COORDINATES, MESH_TOTALS, SHAFT_TOTALS, TRAIN_SAMPLES, TWO_SHAFTS
 from gearidae.archive.train.work import MESH_LOSSES
@@ -32,7 +32,13 @@ def judged_view(ds: xr.Dataset) -> xr.Dataset:
     """Return a run of a train as that of a pair: the shaft that is judged, the mesh that drives it, the drive.
 
     Anything else is returned as it is. Losses are those of the whole train, so that the energy balance is whole.
+
+    Raises
+    ------
+    SceneError
+        If some of the shafts or meshes of a train have been selected.
     """
+    refuse_parts(ds)
     if not is_train(ds):
         return ds
     losses = {name: ds[name].sum("mesh", keep_attrs=True) for name in MESH_LOSSES if name in ds}
@@ -61,6 +67,8 @@ def judged_view(ds: xr.Dataset) -> xr.Dataset:
 def train_form(ds: xr.Dataset) -> xr.Dataset:
     """Return a run of gears with ``shaft`` and ``mesh``, whatever its scene's form is.
 
+    That of a pair is a table of its variables, for comparisons: what judges and draws runs takes the pair's own.
+
     Parameters
     ----------
     ds : xarray.Dataset
@@ -72,7 +80,7 @@ def train_form(ds: xr.Dataset) -> xr.Dataset:
     SceneError
         If it is a run of a roller.
     """
-    if is_train(ds):
+    if ds.attrs.get("form") == TABLE_OF_PAIR or is_train(ds):
         return ds
     scene = run_scene(ds)
     if not isinstance(scene, GearScene):
@@ -92,5 +100,5 @@ def train_form(ds: xr.Dataset) -> xr.Dataset:
     for name in made:
         if name in catalogue:
             view[name].attrs = catalogue[name].attributes
-    names = {"judged_shaft": "gear", "judged_mesh": "mesh", "drive_shaft": "pinion"}
+    names = {"form": TABLE_OF_PAIR, "judged_shaft": "gear", "judged_mesh": "mesh", "drive_shaft": "pinion"}
     return view.assign_coords(coordinates(train, train.load)).assign_attrs(names)

@@ -52,7 +52,7 @@ def work_shares(ds: xr.Dataset) -> list[Share]:
     list of Share
         From the drive to the load: each mesh (adhesion, damping, film, friction), each hub, dry resistance and drags
         of each shaft, pin, load, the change of kinetic energy and of that in contacts, less the work of the changing
-        radius.
+        radius. Empty of a run that has not followed its balance (``run.balance``).
 
     Raises
     ------
@@ -62,8 +62,19 @@ def work_shares(ds: xr.Dataset) -> list[Share]:
     if not is_train(ds) or ds["drive_work"].dims:
         raise SceneError("dataset", type(ds).__name__, "must be a single run of a train of several meshes")
     drive = float(ds["drive_work"])
+    if math.isnan(drive):
+        return []
     parts = [(name, energy) for name, energy in _parts(ds) if energy != 0.0]
     return [Share(name, energy, energy / drive if drive != 0.0 else math.nan) for name, energy in parts]
+
+
+def passed_on(ds: xr.Dataset) -> dict[str, float]:
+    """Efficiencies of the meshes and hubs of a run, by their names in `work_shares`; NaN where nothing arrived."""
+    return {
+        f"{words} {name}": float(passed)
+        for words, dim in (("mesh", "mesh"), ("hub of", "shaft"))
+        for name, passed in zip(ds[dim].values, ds[f"{words.split()[0]}_efficiency"].values, strict=True)
+    }
 
 
 def _parts(ds: xr.Dataset) -> Iterator[tuple[str, float]]:

@@ -25,7 +25,6 @@ from gearidae.engine.train.layout import TrainModel, blank_train
 from gearidae.engine.train.loop import LOOKS
 from gearidae.engine.train.observe import kinetic_energy_of, write_stored
 from gearidae.engine.train.start import begin_train
-from gearidae.errors import SceneError
 from gearidae.laws.frictions import resists
 from gearidae.records import first_sample
 from gearidae.scene import Drive, GearScene, Load
@@ -84,14 +83,9 @@ def make_train(scene: TrainScene, start: Start = AT_ONCE) -> TrainProblem:
     start : Start, optional
         Of a run that goes on from another, whose time alone is used.
 
-    Raises
-    ------
-    SceneError
-        If it has what several meshes cannot have.
     """
     make_part_ready(TRAIN)
     train = scene.train
-    _refuse(scene, train)
     pairs, problems = _pairs(scene, train, Start(start.time))
     addresses = tuple(_alone(problem.model) for problem in problems)
     rubbing = [problem.model.scene for problem in problems if problem.model.scene.friction.flanks != 0]
@@ -103,33 +97,6 @@ def make_train(scene: TrainScene, start: Start = AT_ONCE) -> TrainProblem:
     _set_start(tm, scene, train, pairs, problems)
     begin_train(tm)
     return TrainProblem(scene, tm, problems, addresses)
-
-
-def _refuse(scene: TrainScene, train: Train) -> None:
-    """Refuse what a train cannot be run with yet."""
-    if all(mesh.b != train.load for mesh in train.meshes):
-        raise SceneError("load.shaft", train.shafts[train.load].name, "must be a shaft that a mesh drives")
-    run = scene.run
-    refused = (
-        (run.stop == "sticks", "run.stop", "each of its shafts may stick"),
-        (run.impacts, "run.impacts", "impacts are a table of one mesh"),
-        (
-            run.method != "auto",
-            "run.method",
-            "a train has a formula of its own; another driver may be chosen",
-        ),
-        (
-            run.samples == "ringing",
-            "run.samples",
-            "how its contacts ring is not known before: samples must be a number or a rate",
-        ),
-        (bool(run.checkpoints), "run.checkpoints", "its checkpoints are where its blocks end"),
-    )
-    for there, key, reason in refused:
-        if there:
-            table, name = key.split(".")
-            value = getattr(getattr(scene, table), name)
-            raise SceneError(key, value, f"cannot be combined with several meshes: {reason}")
 
 
 # -- pairs -----------------------------------------------------------------------------------------------------------

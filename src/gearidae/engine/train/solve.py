@@ -190,7 +190,7 @@ def _follow(
     steps.
     """
     tm, train = problem.model, problem.model.train[0]
-    status, message, words = "", "", None
+    status, message, words = "", "", pack_train(problem) if train.done else None
     with compiling(TRAIN, HOW_LONG[TRAIN]):
         advance_train(tm, kept.out, 0)
     begun = time.perf_counter() - wall_time

@@ -11,6 +11,7 @@ from gearidae.engine.events.law_switches import set_law_sides, set_law_window
 from gearidae.engine.model.addresses import model_at
 from gearidae.engine.model.state import U
 from gearidae.engine.observers import adhesion_loss
+from gearidae.engine.train.events import train_way_left
 from gearidae.engine.train.flanks import NO_CONVERGENCE
 from gearidae.engine.train.layout import TrainModel
 from gearidae.engine.train.motion import mesh_state, motion
@@ -60,6 +61,8 @@ def take_up(tm: TrainModel) -> None:
             begin_within(m, tm.own)
         adhesion_loss.begin(m, time)
     train.fresh = 1
+    if train.time >= train.end or train_way_left(tm, tm.y) <= 0.0:
+        train.done = 1  # interrupted behind its last block
 
 
 @compiled
