@@ -4,7 +4,7 @@ Runs the whole benchmark (some fifty minutes), writes ``benchmarks/results/``, r
 of ``docs/benchmarks.md`` and the pictures ``docs/images/work_precision_*.png``. ``--quick`` measures little, to see
 that it works; ``--tables`` only writes the page again from the last results. A part alone: ``--long`` lets a million
 teeth pass (some minutes), ``--start-stop`` measures start-ups and brakings (half an hour), ``--trains`` trains of
-several meshes (a minute), ``--defaults`` what each default of a run costs (some minutes).
+several meshes (a minute), ``--defaults`` what each default of a run costs (a minute).
 """
 
 from __future__ import annotations
