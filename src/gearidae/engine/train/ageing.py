@@ -29,18 +29,12 @@ def age_of(tm: TrainModel, j: int, t: float, y: Floats) -> float:
 
 @compiled
 def set_joint_friction(tm: TrainModel, t: float, y: Floats) -> None:
-    """Set the coefficients of all joints at a time [s] and a state, and what follows for shafts and pin."""
-    last = len(tm.shafts)
-    for j in range(last + 1):
+    """Set the friction of all joints at a time [s] and a state."""
+    for j in range(len(tm.joints)):
         joint = tm.joints[j]
-        if joint.rise == 0.0:
-            continue
-        joint.friction = joint.fresh + rise_at(joint, age_of(tm, j, t, y))
-        if j < last:
-            shaft = tm.shafts[j]
-            shaft.hub_arm, shaft.hub_torque = joint.friction * joint.radius, joint.friction * joint.hold
-        else:
-            tm.train[0].pin_arm = joint.friction * joint.radius
+        if joint.rise != 0.0:
+            joint.friction = joint.fresh + rise_at(joint, age_of(tm, j, t, y))
+            joint.by_load, joint.constant = joint.friction * joint.radius, joint.friction * joint.hold
 
 
 @compiled

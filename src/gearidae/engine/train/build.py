@@ -208,11 +208,10 @@ def _add_shafts(tm: TrainModel, scene: TrainScene, train: Train) -> None:
     for number, (laid, record) in enumerate(zip(train.shafts, tm.shafts, strict=True)):
         shaft = scene.shafts[laid.name]
         record["inertia"], record["ratio"] = laid.inertia, float(_turns(train, number))
-        for key in ("resistance", "viscous", "drag", "hub_radius"):
+        for key in ("resistance", "viscous", "drag"):
             record[key] = getattr(shaft, key)
         hub = shaft.hub_of(laid.name)
         if hub is not None:
-            record["hub_arm"], record["hub_torque"] = hub.arm, hub.torque(0.0)
             _add_joint(tm.joints[number], hub, number, scene)
         record["rubs"] = int(record["resistance"] > 0.0 or (hub is not None and bool(hub.holding)))
 
@@ -221,6 +220,7 @@ def _add_joint(record: Record, joint: Joint, shaft: int, scene: TrainScene) -> N
     """Set the constants of a hub or the pin, and its age after the rest before the start."""
     record["shaft"], record["radius"], record["hold"] = shaft, joint.radius, joint.holding_torque
     record["fresh"], record["rise"] = joint.coefficient, joint.rise
+    record["by_load"], record["constant"] = joint.arm, joint.torque(0.0)
     record["age"], record["friction"] = scene.initial.rest_time, joint.aged(scene.initial.rest_time)
     if joint.rise > 0.0:
         record["ageing_rate"] = 1.0 / joint.ageing_time
@@ -243,7 +243,6 @@ def _add_train(
             math.sin(drive.orientation),
         )
         pin = train_pin(scene)
-        record.pin_arm = pin.arm
         _add_joint(tm.joints[-1], pin, train.drive, scene)
         if pin.holding:
             tm.shafts[train.drive]["rubs"] = 1

@@ -116,14 +116,14 @@ def _push(tm: TrainModel, a: int, b: int, x: float, y: float) -> None:
 @compiled
 def set_limit(tm: TrainModel, i: int) -> float:
     """Set the load of a shaft's hub, and the limit of all that may hold the shaft; the part of its hub is returned."""
-    train, shaft = tm.train[0], tm.shafts[i]
+    train, shaft, joint = tm.train[0], tm.shafts[i], tm.joints[i]
     shaft.hub = math.hypot(shaft.load_x, shaft.load_y)
-    hub = shaft.hub_arm * shaft.hub + shaft.hub_torque
+    hub = joint.by_load * shaft.hub + joint.constant
     shaft.limit = shaft.resistance + hub
     if i == train.load:
         shaft.limit += train.load_limit
     if i == train.drive:
-        shaft.limit += train.pin_arm * train.pin
+        shaft.limit += tm.joints[-1].by_load * train.pin
     return hub
 
 

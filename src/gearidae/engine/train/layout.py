@@ -32,12 +32,6 @@ SHAFT: Final = record_type(
     ("viscous", REAL),  # [N m s]
     ("drag", REAL),  # [N m s^2]
     ("rubs", INT),  # 1 if anything dry may hold it
-    (
-        "hub_arm",
-        REAL,
-    ),  # coefficient times radius of its hub [m]; of one that ages that of the last evaluation
-    ("hub_torque", REAL),  # of adhesion and axial load [N m], likewise
-    ("hub_radius", REAL),  # [m]
     ("begin", REAL),  # departure at the start [rad]
     ("still", REAL),  # speed below which it counts as at rest beside flanks with friction [rad/s]
     ("creeps", REAL),  # speed below which it may creep towards rest, or that of its tolerance [rad/s]
@@ -73,8 +67,10 @@ JOINT: Final = record_type(
     ("forgetting", REAL),  # memory lengths in a radian
     # state
     ("age", REAL),  # at the accepted time [s]
-    # of the last evaluation
+    # of one that ages that of the last evaluation
     ("friction", REAL),  # coefficient [1]
+    ("by_load", REAL),  # coefficient times radius [m]
+    ("constant", REAL),  # torque of adhesion and axial load [N m]
 )
 
 MESH: Final = record_type(
@@ -126,7 +122,6 @@ TRAIN: Final = record_type(
     ("pushes", INT),  # 1 if the drive pushes with a pin
     ("cosine", REAL),  # of the direction of its axes in the frame
     ("sine", REAL),
-    ("pin_arm", REAL),  # coefficient times radius of the pin [m], as those of hubs
     ("per_radian", REAL),  # pitches of the load's gear in a radian
     (
         "period",

@@ -184,7 +184,7 @@ def motion(tm: TrainModel, t: float, y: Floats, dy: Floats) -> None:
         if train.balance != 0:
             first, slid = 2 * n + OF_SHAFT * i, shaft.slip * w
             dy[first] = hub * slid
-            dy[first + 1] = shaft.hub * shaft.hub_radius * abs(w)
+            dy[first + 1] = shaft.hub * tm.joints[i].radius * abs(w)
             dy[first + 2] = shaft.resistance * slid
             dy[first + 3] = (shaft.viscous + shaft.drag * abs(w)) * w * w
     dy[train.load] = train.per_radian * y[n + train.load]
@@ -193,7 +193,7 @@ def motion(tm: TrainModel, t: float, y: Floats, dy: Floats) -> None:
         dy[last] = train.drive_torque * y[n + train.drive]
         dy[last + 1] = train.load_limit * shafts[train.load].slip * y[n + train.load]
         dy[last + 2] = -train.drags * y[n + train.load]
-        dy[last + 3] = train.pin_arm * train.pin * shafts[train.drive].slip * y[n + train.drive]
+        dy[last + 3] = tm.joints[-1].by_load * train.pin * shafts[train.drive].slip * y[n + train.drive]
 
 
 @compiled
