@@ -150,7 +150,7 @@ def test_each_asperity_joins_and_lets_go_in_turn():
 
 def test_shorter_steps_find_the_same_events():
     """Of bare teeth without damping; steps are a tenth as long, which changes the motion by some tolerances."""
-    bare = {"coating.sam_fraction": 0.0, "mesh.damping": 0.0, "run.rtol": 1e-11}
+    bare = {"coating.sam_fraction": 0.0, "mesh.damping": 0.0, "run.rtol": 1e-10}
     scene = discrete(chain(), **bare).replace({"run.duration": 15e-6, "run.samples": 2})
     usual = solve_train(scene)
     short = solve_train(scene.replace({"run.largest_step": 15e-6 / (10 * usual.statistics.steps)}))
