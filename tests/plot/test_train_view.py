@@ -86,6 +86,17 @@ def test_arrows_are_the_loads_of_the_hubs(three):
     assert lengths[0] * largest == pytest.approx(view._longest, rel=1e-9)
 
 
+def test_teeth_that_only_damping_holds_do_not_touch(three):
+    """Damping of the transmission error acts in flight, too: its force is no push."""
+    apart = three.assign(pairs_in_contact=0 * three["pairs_in_contact"])
+    assert np.abs(apart["mesh_force"].isel(time=-1)).min() > 0.0
+    whites = [
+        sum(line.get_markerfacecolor() == "white" for ax in gd.plot.train(ds).axes for line in ax.lines)
+        for ds in (three, apart)
+    ]
+    assert whites[1] - whites[0] == three.sizes["mesh"]
+
+
 def test_a_hub_without_a_load_has_no_arrow(three):
     run = train_run(three)
     (state,) = train_states(run, [50e-6])

@@ -65,7 +65,7 @@ def decoded(text):
 
 def test_pictures_are_samples_of_the_record(swept):
     shafts, meshes = swept.sizes["shaft"], swept.sizes["mesh"]
-    columns = 4 * shafts + meshes
+    columns = 4 * shafts + 2 * meshes
     data = pack_explorer(swept, most_values=2 * 100 * (columns + 2 * (2 * shafts + meshes)))
     assert (data["every"], data["frames"]) == (7, 86)
     assert data["dims"][0]["values"] == ["200 nm", "300 nm"]
@@ -79,7 +79,9 @@ def test_pictures_are_samples_of_the_record(swept):
             if name == "shaft_angle":  # of one turn
                 shown, recorded = np.exp(1j * shown), np.exp(1j * recorded)
             np.testing.assert_allclose(shown, recorded, rtol=3e-7)  # float32 keeps seven digits
-        np.testing.assert_allclose(frames[:, -meshes:], seen["mesh_force"].T, rtol=1.2e-7)
+        forces, pairs = frames[:, -2 * meshes : -meshes], frames[:, -meshes:]
+        np.testing.assert_allclose(forces, seen["mesh_force"].T, rtol=1.2e-7)
+        np.testing.assert_array_equal(pairs, seen["pairs_in_contact"].T)
         loads = [decoded(text) for text in data["runs"][number]["curves"][-shafts:]]
         # curves keep the extremes of what lies between
         assert [load.max() for load in loads] == [np.float32(load.max()) for load in run["hub_load"].values]

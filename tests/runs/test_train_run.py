@@ -113,6 +113,16 @@ def test_a_run_without_its_balance_has_no_works(tmp_path, capfd):
         gd.plot.work(gd.open(tmp_path / "out.nc"))
 
 
+def test_a_run_that_ends_by_its_turns_says_for_how_long_it_was():
+    scene = Scene.from_dict(chain()).replace(
+        {"run.stop": "turns 1e-4", "run.duration": "1 ms", "run.samples": "off"}
+    )
+    ds = gd.simulate(scene)
+    assert ds.attrs["t_end"] == float(ds["reached"]) < 1e-6
+    assert ds.gearidae.verdicts().words[0].endswith("in 0.671 us")
+    assert gd.simulate(scene, start=ds).attrs["t_end"] < 2e-6
+
+
 def test_a_refused_run_touches_no_archive(tmp_path, monkeypatch):
     """Whatever the engine refuses is an error of the scene, and no full disk."""
 

@@ -163,6 +163,7 @@ def test_trains_that_are_turned_back_have_not_started():
         back, {"drive.torque": "uniform(-1e-11, -8e-12)"}, 2, by=["1 ms"], progress=False
     )
     assert (int(ds.started[0]), ds.members.values.tolist()) == (0, [2])
+    assert "0 of 2 trains have started after 1 ms" in repr(ds.gearidae)
 
 
 def test_tolerances_are_compared_by_the_judged_shaft_and_its_mesh():

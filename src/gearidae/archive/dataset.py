@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Hashable, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
@@ -36,6 +36,9 @@ from gearidae.records import ROWS, Solution, Statistics
 from gearidae.scene import Scene, describe_key
 from gearidae.scene.combinations import bodies_reason
 from gearidae.scene.sampled import columns_of
+
+if TYPE_CHECKING:
+    from gearidae.records.train_results import TrainSolution
 
 _COUNTERS = tuple(name for name, variable in RUN.items() if variable.dtype is np.int64)
 _RESERVED = {*by_name(), *DIMS, "scene", "coordinates"}
@@ -83,7 +86,7 @@ def to_dataset(scene: Scene, solution: Solution) -> xr.Dataset:
             **surface_regimes(scene),
             **_asperities_digest(scene),
             **end_state_attributes(solution.start, solution.checkpoint),
-            "t_end": _end(scene, solution),
+            "t_end": end_time(scene, solution),
         },
     )
 
@@ -104,14 +107,14 @@ def _asperities_digest(scene: Scene) -> dict[str, str]:
     return {"asperities_sha256": flanks_digest(flanks_of(scene))}
 
 
-def _end(scene: Scene, solution: Solution) -> float:
+def end_time(scene: Scene, solution: Solution | TrainSolution) -> float:
     """When a run ends [s]: at the end of its time, or where it was to stop."""
     if scene.run.stop != "time" and solution.status == "finished":
         return reached(solution)
     return solution.start + scene.run.duration
 
 
-def reached(solution: Solution) -> float:
+def reached(solution: Solution | TrainSolution) -> float:
     """Return the simulated time that a run reached [s]."""
     if solution.reached is not None:
         return solution.reached

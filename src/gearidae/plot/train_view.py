@@ -27,7 +27,15 @@ from gearidae.scene.scene import is_long_train
 
 SHAFT_COLOURS: Final = ("#d3e5f3", "#f1d9a8", "#cfe8d8", "#ead6e4", "#dddddd", "#f6d9cc")
 """Of the gears of each shaft, again from the first where there are more."""
-_SAMPLES = ("shaft_angle", "shaft_speed", "hub_load", "hub_load_angle", "mesh_force", "transmission_error")
+_SAMPLES = (
+    "shaft_angle",
+    "shaft_speed",
+    "hub_load",
+    "hub_load_angle",
+    "mesh_force",
+    "pairs_in_contact",
+    "transmission_error",
+)
 _WIDTH, _STRIP, _LEGEND, _TITLE = 7.6, 1.15, 0.3, 0.35  # inches
 LONGEST, SHORTEST = 0.17, 0.12
 """Longest arrow over the diagonal of the picture, and shortest over the longest: it shows where a small load points."""
@@ -49,6 +57,8 @@ class TrainState:
         Of each hub [N], and its direction in the frame [rad].
     force : ndarray
         Of each mesh [N].
+    pairs : ndarray
+        In contact in each mesh; damping and attraction act without any, too.
     """
 
     time: float
@@ -57,6 +67,7 @@ class TrainState:
     load: Floats
     load_angle: Floats
     force: Floats
+    pairs: Floats
 
 
 def train(
@@ -139,8 +150,7 @@ def train_states(run: xr.Dataset, times: ArrayLike) -> list[TrainState]:
     before = np.maximum(after - 1, 0)
     nearest = np.where(wanted - recorded[before] <= recorded[after] - wanted, before, after)
     picked = run[list(_SAMPLES)].isel(time=nearest).load()
-    names = "shaft_angle", "shaft_speed", "hub_load", "hub_load_angle", "mesh_force"
-    columns = [picked[name].transpose("time", ...).values for name in names]
+    columns = [picked[name].transpose("time", ...).values for name in _SAMPLES[:-1]]
     return [TrainState(float(recorded[k]), *row) for k, *row in zip(nearest, *columns, strict=True)]
 
 
@@ -201,8 +211,8 @@ class TrainView:
             angle = float(state.angle[gear.shaft])
             outline.set_xy(_micro(gear.outline(angle)))
             tooth.set_data(*_micro(gear.mark_at(angle))[:, None])
-        for mark, force in zip(self._marks, state.force, strict=True):
-            mark.set_markerfacecolor("white" if force == 0.0 else POSITIVE if force > 0.0 else NEGATIVE)
+        for mark, force, pairs in zip(self._marks, state.force, state.pairs, strict=True):
+            mark.set_markerfacecolor("white" if pairs == 0.0 else POSITIVE if force > 0.0 else NEGATIVE)
         for number, shaft in enumerate(self._train.shafts):
             self._draw_hub(number, _micro(np.array(shaft.centre)), state)
         self._cursor.set_xdata([state.time * self._time_factor] * 2)

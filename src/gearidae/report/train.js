@@ -74,7 +74,7 @@
         const force = state.force[k];
         pen.beginPath();
         pen.arc(...at(each.at), 4, 0, 2 * Math.PI);
-        pen.fillStyle = force === 0 ? style("--ground") : colour(force > 0 ? 0 : 1);
+        pen.fillStyle = state.pairs[k] === 0 ? style("--ground") : colour(force > 0 ? 0 : 1);
         pen.strokeStyle = style("--ink");
         pen.lineWidth = 1.2;
         pen.fill();
@@ -131,7 +131,7 @@
       });
       cells.meshes.forEach(([force, teeth], k) => {
         force.textContent = quantity(state.force[k], "N", 3);
-        teeth.textContent = state.force[k] === 0 ? "do not touch" : state.force[k] > 0 ? "push" : "pull";
+        teeth.textContent = state.pairs[k] === 0 ? "do not touch" : state.force[k] > 0 ? "push" : "pull";
       });
     }
 
@@ -143,7 +143,7 @@
       ],
       stateOf(numbers) {
         const part = (k) => numbers.subarray(k * shafts, (k + 1) * shafts);
-        return { angle: part(0), speed: part(1), load: part(2), direction: part(3), force: numbers.subarray(4 * shafts) };
+        return { angle: part(0), speed: part(1), load: part(2), direction: part(3), force: numbers.subarray(4 * shafts, 4 * shafts + data.meshes.length), pairs: numbers.subarray(4 * shafts + data.meshes.length) };
       },
       draw(state, gears) {
         canvas.hidden = !state;

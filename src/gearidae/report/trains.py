@@ -21,7 +21,8 @@ from gearidae.scene import is_long_train
 from gearidae.scene.train import Train
 
 _OF_SHAFTS: Final = ("shaft_angle", "shaft_speed", "hub_load", "hub_load_angle")
-"""Numbers of a picture for each shaft; one more, the force, for each mesh."""
+_OF_MESHES: Final = ("mesh_force", "pairs_in_contact")
+"""Numbers of a picture for each shaft, and for each mesh."""
 _PLOTS: Final = (("shaft_speed", "shaft"), ("mesh_force", "mesh"), ("hub_load", "shaft"))
 """Curves over time, one for each shaft or mesh."""
 
@@ -56,7 +57,7 @@ def pack_trains(ds: xr.Dataset, most_values: int) -> dict[str, Any]:
     members = [run for _, run in runs(ds)]
     shafts, meshes = (ds[dim].values.tolist() for dim in ("shaft", "mesh"))
     columns = [f"{name} {shaft}" for name in _OF_SHAFTS for shaft in shafts]
-    columns += [f"mesh_force {mesh}" for mesh in meshes]
+    columns += [f"{name} {mesh}" for name in _OF_MESHES for mesh in meshes]
     curves = 2 * len(shafts) + len(meshes)
     every, size = thinning(samples, len(members), len(columns), curves, most_values)
     gears: list[dict[str, Any]] = []
@@ -84,7 +85,7 @@ def pack_trains(ds: xr.Dataset, most_values: int) -> dict[str, Any]:
 
 def _samples(ds: xr.Dataset) -> int:
     """Samples that the longest run has."""
-    missing = [name for name in (*_OF_SHAFTS, "mesh_force", "transmission_error") if name not in ds]
+    missing = [name for name in (*_OF_SHAFTS, *_OF_MESHES, "transmission_error") if name not in ds]
     if missing:
         raise SceneError("explore", missing[0], "the dataset has no samples of it")
     samples = max(_reached(run) for _, run in runs(ds)) if ds.sizes["time"] else 0
@@ -108,7 +109,7 @@ def _frames(run: xr.Dataset, every: int, count: int) -> Floats:
     columns = [
         # float32 keeps the angle of one turn to less than a nanometre of a gear, not that of thousands
         values % (2.0 * math.pi) if name == "shaft_angle" else values
-        for name in (*_OF_SHAFTS, "mesh_force")
+        for name in (*_OF_SHAFTS, *_OF_MESHES)
         for values in (picked(line, every, count) for line in _lines(run, name))
     ]
     return np.stack(columns, axis=1)

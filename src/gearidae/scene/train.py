@@ -395,9 +395,9 @@ def _check_direction(names: Sequence[str], meshes: Sequence[TrainMesh], drive: i
 def _check_sizes(meshes: Sequence[TrainMesh]) -> None:
     """Let every gear have one base radius and one pressure angle in all of its meshes, and meet another once."""
     for number, mesh in enumerate(meshes):
-        for first in meshes[:number]:
-            if (first.driver, first.driven) == (mesh.driver, mesh.driven):
-                reason = f"meets {mesh.driver} in meshes.{first.name} already: two gears have one mesh"
+        for other in meshes[:number]:
+            if (other.driver, other.driven) == (mesh.driver, mesh.driven):
+                reason = f"meets {mesh.driver} in meshes.{other.name} already: two gears have one mesh"
                 raise SceneError(f"meshes.{mesh.name}.driven", mesh.driven, reason)
     sizes: dict[str, tuple[str, float, float]] = {}
     for mesh in meshes:

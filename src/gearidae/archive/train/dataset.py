@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from gearidae.archive.dataset import statistics_attributes
+from gearidae.archive.dataset import end_time, statistics_attributes
 from gearidae.archive.end_state import end_state_attributes
 from gearidae.archive.output_selection import EVERYTHING, OutputSelection
 from gearidae.archive.provenance import provenance
@@ -127,7 +127,7 @@ def train_dataset(
             "drive_shaft": scene.train.shafts[scene.train.drive].name,
             **({"held_by": ", ".join(solution.held_by)} if solution.held_by else {}),
             **end_state_attributes(solution.start, solution.checkpoint, verdict),
-            "t_end": solution.start + scene.run.duration,
+            "t_end": end_time(scene, solution),
         },
     )
 
