@@ -310,5 +310,7 @@ def misses_laws(m: Model, t: float, y: Floats, counts: bool) -> bool:
         else:
             jump = law_value(m, shaft, t, last[0], last[1]) - law_value(m, shaft, a.time, first[0], first[1])
             if h * abs(jump) * mass > IMPULSE_MISSED:
+                if counts:  # of a law that chatters, each second attempt fails here
+                    note_law_jump(m, a.time, a.state, False)
                 return True
     return False
