@@ -303,10 +303,7 @@ def test_a_law_that_jumps_with_the_angle_is_named_before_a_run(caplog):
     """At ``acos(0.3) / 2000`` first, and twice in each of 2000 parts of a turn."""
     with caplog.at_level("WARNING"):
         gd.simulate(MOTION.replace({"drive.law": law("sectors", TORQUE, 2000.0), "run.duration": 1e-5}))
-    assert (
-        "drive.law = sectors jumps at an angle of 0.000633052 rad and 3999 times more in a turn"
-        in caplog.text
-    )
+    assert "drive.law = sectors jumps at an angle of 0.000633052 rad and 3999 more in a turn" in caplog.text
     assert "register it with switch=" in caplog.text
     caplog.clear()
     with caplog.at_level("WARNING"):

@@ -358,6 +358,10 @@ def iterate(n: int, m: Model, attempt: Attempt) -> int:
         last = norm
     a.failures += 1
     a.contraction_rate = 1.0
+    if m.scene.law_watched != 0:  # iterates that go to and fro over a law's jump do not converge
+        for j in range(n):
+            attempt.delta[j] = predicted[j] + correction[j]
+        note_law_iterates(m, attempt.t, attempt.y, attempt.delta)
     return FAILED
 
 

@@ -74,7 +74,7 @@ def _laws(scene: Scene) -> list[str]:
             )
         angles = max(found_angles(name, numbers, 0.0, end), key=len, default=[])
         if angles:
-            more = f" and {len(angles) - 1} times more in a turn" if len(angles) > 1 else ""
+            more = f" and {len(angles) - 1} more in a turn" if len(angles) > 1 else ""
             lines.append(
                 f"{key} = {name} jumps at an angle of {angles[0]:.6g} rad{more}, {looks}; shorter sectors than "
                 f"{with_prefix(2.0 * math.pi / JUMP_LOOKS, 'rad')} may be missed: register it with switch=, a function "

@@ -141,12 +141,13 @@ def note_law_jump(m: Model, t: float, y: Floats, always: bool) -> None:
 
 @compiled
 def note_law_iterates(m: Model, t: float, last: Floats, y: Floats) -> None:
-    """Count a jump of a law between the last iterate whose forces are known and the solution.
+    """Count a jump of a law between the last iterate whose forces are known and what follows from them.
 
     Of a law that chatters a short step may begin and end on one side of the jump, and be driven back there by forces
-    of the other side: what they change is below the tolerance, so that the iteration stops there.
+    of the other side: what they change is below the tolerance, so that the iteration stops there. In a longer one the
+    iterates go to and fro.
     """
-    jumps = m.scene.law_switches != 0 and law_guard(m, t, last) < 0.0 <= law_guard(m, t, y)
+    jumps = m.scene.law_switches != 0 and (law_guard(m, t, last) < 0.0) != (law_guard(m, t, y) < 0.0)
     for shaft in range(2):
         if m.scene.torque[shaft].law_unknown != 0:
             before = torque_angle(m, shaft, last[U], last[PHASE]), _speed(m, shaft, last)
