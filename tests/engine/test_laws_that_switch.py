@@ -125,6 +125,13 @@ def test_pulses_push_gears_at_rest_as_a_schedule_does(name):
 WAYS = [("native", "auto"), ("native", "bdf"), ("sksundae", "auto")]
 
 
+def within(turned, order, least):
+    """Part of an angle [rad] from 0 in which the cosine of a multiple of it is larger than a number."""
+    half = math.acos(least)
+    whole, rest = divmod(order * turned, 2.0 * math.pi)
+    return (whole * 2.0 * half + min(rest, half) + max(0.0, rest - (2.0 * math.pi - half))) / order
+
+
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("name", ["sectors", "sectors_with_switch"])
 def test_sectors_of_the_angle_keep_their_work(flight, name, way):
@@ -134,14 +141,7 @@ def test_sectors_of_the_angle_keep_their_work(flight, name, way):
     changes = {"drive.law": law(name, torque, order), "run.rtol": 1e-7, "run.method": method}
     run = solve(flight.replace(changes), backend=backend)
     angle, speed = run.samples["pinion_angle"], run.samples["pinion_speed"]
-    half = math.acos(0.3)
-
-    def within(x):
-        """Angle within the sectors up to an angle."""
-        whole, rest = divmod(order * x, 2.0 * math.pi)
-        return (whole * 2.0 * half + min(rest, half) + max(0.0, rest - (2.0 * math.pi - half))) / order
-
-    work = np.array([torque * within(x - angle[0]) for x in angle])
+    work = np.array([torque * within(x - angle[0], order, 0.3) for x in angle])
     assert order * (angle[-1] - angle[0]) > 10.0
     np.testing.assert_allclose(0.5 * I1 * (speed**2 - speed[0] ** 2), work, rtol=0, atol=2e-4 * work[-1])
 
@@ -165,24 +165,61 @@ def test_no_step_passes_over_sectors_as_a_whole(flight, method, rtol):
         run = solve(flight.replace(changes | {"run.rtol": rtol, "initial.gear_speed": 1.5}))
     finally:
         gd.unregister_torque("few_sectors")
-    turned = order * (run.samples["pinion_angle"][-1] - run.samples["pinion_angle"][0])
-    half = math.acos(0.64)
-    whole, rest = divmod(turned, 2.0 * math.pi)
-    within = whole * 2.0 * half + min(rest, half) + max(0.0, rest - (2.0 * math.pi - half))
+    turned = run.samples["pinion_angle"][-1] - run.samples["pinion_angle"][0]
     speed = run.samples["pinion_speed"]
     energy = 0.5 * I1 * (speed[-1] ** 2 - speed[0] ** 2)
-    assert energy == pytest.approx(torque * within / order, rel=1e-4, abs=0)
+    assert energy == pytest.approx(torque * within(turned, order, 0.64), rel=1e-4, abs=0)
+
+
+def sectors_anywhere(t, angle, speed, p):
+    return p[0] if math.cos(p[1] * angle) > p[2] else 0.0
+
+
+def sectors_at_speed(t, angle, speed, p):
+    return p[0] if speed > 2.0 and math.cos(p[1] * angle) > p[2] else 0.0
+
+
+@pytest.mark.parametrize(
+    ("name", "least", "order", "torque", "rtol"),
+    [
+        ("sectors_anywhere", 0.3, 2000.0, 1e-17, 1e-7),
+        ("sectors_anywhere", 0.3, 5000.0, 1e-17, 1e-6),
+        ("sectors_anywhere", 0.99, 2000.0, 1e-17, 1e-6),
+        ("sectors_at_speed", 0.3, 2000.0, 1e-17, 1e-7),
+        ("sectors_at_speed", 0.3, 5000.0, 1e-18, 1e-5),
+    ],
+)
+def test_no_step_passes_over_sectors_of_which_a_law_says_nothing(flight, name, least, order, torque, rtol):
+    """Sectors that a look around the shaft shows, and those that only a turning shaft has.
+
+    Up to 18 % of the work was lost in steps that begin and end in sectors of one kind.
+    """
+    gd.register_torque(name, parameters=3)(globals()[name])
+    try:
+        changes = {"drive.law": law(name, torque, order, least), "run.rtol": rtol}
+        run = solve(flight.replace(changes), backend="native")
+    finally:
+        gd.unregister_torque(name)
+    angle, speed = run.samples["pinion_angle"], run.samples["pinion_speed"]
+    energy = 0.5 * I1 * (speed[-1] ** 2 - speed[0] ** 2)
+    assert energy == pytest.approx(torque * within(angle[-1] - angle[0], order, least), rel=1e-3, abs=0)
 
 
 @pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("rtol", [1e-5, 1e-6])
 @pytest.mark.parametrize("name", ["bang", "bang_with_switch"])
-def test_a_law_that_chatters_is_named(flight, name, way):
-    """A bang-bang controller of the speed without a hysteresis switches for ever once it has reached its speed."""
+def test_a_law_that_chatters_is_named(flight, name, rtol, way):
+    """A bang-bang controller of the speed without a hysteresis switches for ever once it has reached its speed.
+
+    Steps by which it changes the speed by less than the tolerance stay on one side of the jump at both of their ends:
+    200,000 to 3,000,000 of them were no chatter.
+    """
     backend, method = way
-    changes = {"drive.law": law(name, 1e-17, 6.5), "run.rtol": 1e-6, "run.method": method}
+    changes = {"drive.law": law(name, 1e-17, 6.5), "run.rtol": rtol, "run.method": method}
     run = solve(flight.replace(changes), backend=backend)
     assert run.status == "law_chatter"
-    assert run.time[-1] < 2e-3
+    assert run.reached < 0.8e-3
+    assert run.statistics.steps < 2_000
     assert "hysteresis" in run.message
 
 
@@ -260,3 +297,20 @@ def test_a_law_that_says_nothing_and_jumps_is_named_before_a_run(caplog):
         gd.simulate(MOTION.replace({"drive.law": law("pulses", TORQUE), "run.duration": 1.5e-3}))
     assert "pulses jumps at 0.00137 s" in caplog.text
     assert "knots=" in caplog.text
+
+
+def test_a_law_that_jumps_with_the_angle_is_named_before_a_run(caplog):
+    """At ``acos(0.3) / 2000`` first, and twice in each of 2000 parts of a turn."""
+    with caplog.at_level("WARNING"):
+        gd.simulate(MOTION.replace({"drive.law": law("sectors", TORQUE, 2000.0), "run.duration": 1e-5}))
+    assert "drive.law = sectors jumps at an angle of 0.000633052 rad and 3999 more in a turn" in caplog.text
+    assert "register it with switch=" in caplog.text
+    caplog.clear()
+    with caplog.at_level("WARNING"):
+        gd.simulate(
+            MOTION.replace({"drive.law": law("sectors_with_switch", TORQUE, 400.0), "run.duration": 1e-5})
+        )
+        gd.simulate(
+            MOTION.replace({"drive.law": law("rubbing_spring", 1e-14, 0.0, 6.0), "run.duration": 1e-5})
+        )
+    assert "angle" not in caplog.text

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import logging
+import math
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,7 @@ from gearidae.runs.plausibility import doubts
 from gearidae.runs.validity import validity_attribute
 from reference.own_pair import OWN_PAIR
 from reference.random_scenes import random_scene
+from reference.trains import chain
 
 CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
 LOW = gd.preset("teodorescu2009_low_speed")
@@ -24,6 +26,22 @@ DISCS = LOW.replace({"gears": OWN_PAIR["gears"]})
 @pytest.mark.parametrize("case", [pytest.param(path, id=path.stem) for path in CASES])
 def test_nothing_is_said_of_the_shipped_cases(case):
     assert doubts(gd.load_case(case)) == []
+
+
+def half_turns(t, angle, speed, p):
+    return p[0] if math.cos(angle) > 0.0 else 0.0
+
+
+@pytest.mark.parametrize("scene", [LOW, gd.Scene.from_dict(chain())])
+def test_a_law_that_jumps_with_the_angle_is_named(scene):
+    """Of pairs and of trains, at a quarter of a turn and at three."""
+    gd.register_torque("half_turns", parameters=1)(half_turns)
+    try:
+        lines = doubts(scene.replace({"drive.law": {"name": "half_turns", "parameters": [1e-18]}}))
+    finally:
+        gd.unregister_torque("half_turns")
+    words = "drive.law = half_turns jumps at an angle of 1.5708 rad and 1 more in a turn"
+    assert [line.startswith(words) for line in lines].count(True) == 1
 
 
 @pytest.mark.parametrize(

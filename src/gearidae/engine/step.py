@@ -43,6 +43,8 @@ from gearidae.engine.events.histories import accept
 from gearidae.engine.events.law_switches import (
     laws_chatter,
     misses_laws,
+    note_iterate_of_laws,
+    note_law_iterates,
     note_law_jump,
     note_step_of_laws,
     set_law_sides,
@@ -282,9 +284,7 @@ def residual_of_attempt(m: Model, t: float, y: Floats, yp: Floats, out: Floats) 
     residual(m, t, y, yp, out)
     if m.scene.law_watched == 0 or t <= m.work.adams.time:
         return
-    if misses_laws(m, t, y, False):
-        # an iterate of an accepted step is no jump more; an attempt that fails is one, of a law that chatters
-        note_law_jump(m, m.work.adams.time, m.work.adams.state, False)
+    if note_iterate_of_laws(m, t, y):
         for j in range(out.size):
             out[j] = math.nan
 
@@ -358,14 +358,19 @@ def iterate(n: int, m: Model, attempt: Attempt) -> int:
         last = norm
     a.failures += 1
     a.contraction_rate = 1.0
+    if m.scene.law_watched != 0:  # iterates that go to and fro over a law's jump do not converge
+        for j in range(n):
+            attempt.delta[j] = predicted[j] + correction[j]
+        note_law_iterates(m, attempt.t, attempt.y, attempt.delta)
     return FAILED
 
 
 @compiled
 def _passes_jump(n: int, m: Model, attempt: Attempt) -> bool:
-    """Whether the step that has been solved passes over a law's jump."""
+    """Whether the step that has been solved passes over a law's jump; one between its last iterates is counted, too."""
     for j in range(n):
-        attempt.y[j] = m.work.adams.new_state[j]
+        attempt.delta[j], attempt.y[j] = attempt.y[j], m.work.adams.new_state[j]
+    note_law_iterates(m, attempt.t, attempt.delta, attempt.y)
     return misses_laws(m, attempt.t, attempt.y, True)
 
 
@@ -671,7 +676,7 @@ def restart(s: Stepper, stop: float) -> int:
     if m.work.adams.native_newton != 0:
         if m.scene.nodes > 0:
             begin_deflections(m, t, s.y)
-        flag |= configure_ida(ida, m.work.adams)
+        flag |= configure_ida(ida, m)
     begin_interval(s, evaluate_guard(s, t))
     m.work.search.rest = m.work.search.stop = 0
     return flag

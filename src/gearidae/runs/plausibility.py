@@ -42,7 +42,7 @@ def doubts(scene: Scene) -> list[str]:
     """
     if isinstance(scene, TrainScene):
         lines = [f"mesh {name}: {line}" for name in scene.meshes for line in _sizes(scene.pair(name))]
-        return lines + _idle_ageing(scene)
+        return lines + _idle_ageing(scene) + _laws(scene)
     parts = (_sizes, _resistance, _bodies, _path_force, _idle, _inertias, _laws)
     return [line for part in parts for line in part(scene)]
 
@@ -54,20 +54,31 @@ def log_doubts(scene: Scene) -> None:
 
 
 def _laws(scene: Scene) -> list[str]:
-    """Name registered laws that jump in time and do not say so."""
+    """Name registered laws that jump in time or with the angle and do not say so."""
     lines = []
     for key, shaft in (("drive.law", scene.drive), ("load.law", scene.load)):
         if shaft is None or shaft.law is None or torque_law(shaft.law.name).is_declared:
             continue
-        from gearidae.laws.shaft.own import JUMP_LOOKS, law_knots  # with numba, and few scenes need it
+        # with numba, and few scenes need it
+        from gearidae.laws.shaft.own import JUMP_LOOKS, found_angles, law_knots
 
-        times = law_knots(shaft.law.name, shaft.law.numbers(), 0.0, scene.run.duration)
+        name, numbers, end = shaft.law.name, shaft.law.numbers(), scene.run.duration
+        looks = f"as {JUMP_LOOKS} looks at it show"
+        times = law_knots(name, numbers, 0.0, end)
         if times:
             more = f" and {len(times) - 1} times later" if len(times) > 1 else ""
             lines.append(
-                f"{key} = {shaft.law.name} jumps at {times[0]:.6g} s{more}, as {JUMP_LOOKS} looks at it show; shorter "
-                f"pulses than {with_prefix(scene.run.duration / JUMP_LOOKS, 's')} may be missed: register it with "
+                f"{key} = {name} jumps at {times[0]:.6g} s{more}, {looks}; shorter "
+                f"pulses than {with_prefix(end / JUMP_LOOKS, 's')} may be missed: register it with "
                 "knots=, the times at which it jumps, or switch=, a function whose zeros are where it does"
+            )
+        angles = max(found_angles(name, numbers, 0.0, end), key=len, default=[])
+        if angles:
+            more = f" and {len(angles) - 1} more in a turn" if len(angles) > 1 else ""
+            lines.append(
+                f"{key} = {name} jumps at an angle of {angles[0]:.6g} rad{more}, {looks}; shorter sectors than "
+                f"{with_prefix(2.0 * math.pi / JUMP_LOOKS, 'rad')} may be missed: register it with switch=, a function "
+                "whose zeros are where it jumps"
             )
     return lines
 

@@ -115,8 +115,9 @@ def register_torque(
 
     It must be finite at rest. Where it jumps or has a kink, `knots` or `switch` say so: the solver stops there and
     begins anew, in motion and at rest. A law that says nothing is looked at 100,000 times in a run, at fixed angle and
-    speed: its jumps in time are found to rounding, and a shorter pulse may be missed. In motion each step
-    compares it with its interpolation, at three times within the step, and is made shorter until both agree.
+    speed, and one of the angle as often in a turn: its jumps are found to rounding and named before a run, and shorter
+    pulses or sectors may be missed. In motion each step compares it with its interpolation, at three times within the
+    step or within each part that is as long as the shortest sector, and is made shorter until both agree.
     The engine also calls a law a ten-thousandth of the scene's natural time unit before and after a time, along the
     current motion. Use ``harmonic`` for a torque that varies much faster than gears and contacts, in time or with the
     angle. Newton's iteration leaves out the slopes of the law, which is allowed if a shaft needs many steps to follow

@@ -139,6 +139,24 @@ def note_law_jump(m: Model, t: float, y: Floats, always: bool) -> None:
         m.work.law_speed[0], m.work.law_speed[1] = speeds
 
 
+@compiled
+def note_law_iterates(m: Model, t: float, last: Floats, y: Floats) -> None:
+    """Count a jump of a law between the last iterate whose forces are known and what follows from them.
+
+    Of a law that chatters a short step may begin and end on one side of the jump, and be driven back there by forces
+    of the other side: what they change is below the tolerance, so that the iteration stops there. In a longer one the
+    iterates go to and fro.
+    """
+    jumps = m.scene.law_switches != 0 and (law_guard(m, t, last) < 0.0) != (law_guard(m, t, y) < 0.0)
+    for shaft in range(2):
+        if m.scene.torque[shaft].law_unknown != 0:
+            before = torque_angle(m, shaft, last[U], last[PHASE]), _speed(m, shaft, last)
+            after = torque_angle(m, shaft, y[U], y[PHASE]), _speed(m, shaft, y)
+            jumps |= law_jump(m, shaft, t, 0.0, before, after) > 0.0
+    if jumps:
+        note_law_jump(m, t, y, False)
+
+
 @compiled(inline=True)
 def _weight(m: Model, shaft: int) -> float:
     """One over the tolerance of a shaft's speed."""
@@ -232,11 +250,31 @@ def _dips(
 
 
 @compiled
+def note_iterate_of_laws(m: Model, t: float, y: Floats) -> bool:
+    """Look at an iterate where IDA iterates by itself; whether it passes over a law's jump, so that the attempt fails.
+
+    An iterate of an accepted step is no jump more; an attempt that fails is one, of a law that chatters.
+    """
+    if misses_laws(m, t, y, False):
+        note_law_jump(m, m.work.adams.time, m.work.adams.state, False)
+        return True
+    if m.scene.law_switches != 0 and law_guard(m, t, y) < 0.0:
+        m.work.law_beyond = 1
+    return False
+
+
+@compiled
 def note_step_of_laws(m: Model, t: float, y: Floats) -> None:
-    """Note where the next step begins, where IDA iterates by itself; a jump that this one has kept small is counted."""
+    """Note where the next step begins, where IDA iterates by itself.
+
+    A jump that this step has kept small is counted, and one between its iterates, as by `note_law_iterates`.
+    """
     a = m.work.adams
     if t > a.time:
         misses_laws(m, t, y, True)
+    if m.work.law_beyond != 0 and law_guard(m, t, y) >= 0.0:
+        note_law_jump(m, t, y, False)
+    m.work.law_beyond = 0
     a.time = t
     for j in range(MOTION):
         a.state[j] = y[j]
@@ -273,5 +311,7 @@ def misses_laws(m: Model, t: float, y: Floats, counts: bool) -> bool:
         else:
             jump = law_value(m, shaft, t, last[0], last[1]) - law_value(m, shaft, a.time, first[0], first[1])
             if h * abs(jump) * mass > IMPULSE_MISSED:
+                if counts:  # of a law that chatters, each second attempt fails here
+                    note_law_jump(m, a.time, a.state, False)
                 return True
     return False

@@ -34,7 +34,7 @@ from gearidae.compiled import compiled
 from gearidae.engine import adams
 from gearidae.engine.friction.forces import load_pace
 from gearidae.engine.friction.hubs import has_hubs
-from gearidae.engine.model.state import COAST, DRIVE, MOST_ORDERS, PHASE, Floats, Model, Record, U, V, W
+from gearidae.engine.model.state import COAST, DRIVE, LOAD, MOST_ORDERS, PHASE, Floats, Model, Record, U, V, W
 from gearidae.engine.pairs.tooth_pairs import in_flight, nearest_gap, rigid_separation
 from gearidae.engine.sundials import names as sun
 
@@ -72,12 +72,17 @@ EASED: Final = tuple(LEAST_CUT ** (-2.0 * (order + 1.0)) for order in range(MOST
 
 
 @compiled
-def configure_ida(solver: int, a: Record) -> int:
-    """Set IDA's limits of order and step growth for the formulas in use; return 0 on success."""
-    by_adams = a.used != 0
+def configure_ida(solver: int, m: Model) -> int:
+    """Set IDA's limits of order and step growth for the formulas in use; return 0 on success.
+
+    A step longer than those before it together may pass over a whole sector of a law that says nothing of its jumps,
+    and begin and end in two others that are alike.
+    """
+    by_adams = m.work.adams.used != 0
+    unknown = m.scene.torque[DRIVE].law_unknown != 0 or m.scene.torque[LOAD].law_unknown != 0
     flag = sun.IDASetMaxOrd(solver, 1 if by_adams else IDA_ORDER)
     flag |= sun.IDASetEtaFixedStepBounds(solver, 1.0, GROW if by_adams else GROW_IDA)
-    flag |= sun.IDASetEtaMax(solver, GROW_START if by_adams else GROW_IDA)
+    flag |= sun.IDASetEtaMax(solver, GROW_START if by_adams and not unknown else GROW_IDA)
     return flag
 
 

@@ -345,6 +345,7 @@ WORK: Final = record_type(
     ("law_until", REAL),  # and of the next, just before it; 0 outside a run [tau]
     ("law_jumps", INT),  # jumps of laws in close succession [1]
     ("law_steps", INT),  # steps since the last of them [1]
+    ("law_beyond", INT),  # 1 if one of IDA's iterates of this step has been beyond a switch
     (
         "law_speed",
         REAL,

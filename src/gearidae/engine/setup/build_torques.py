@@ -11,7 +11,7 @@ from gearidae.engine.setup.tables import Tables
 from gearidae.laws.frictions import LAWS_OF_SHAFTS, largest_limit
 from gearidae.laws.law import number_of
 from gearidae.laws.shaft.harmonic import common_period, pack_harmonics
-from gearidae.laws.shaft.own import largest_torque, law_knots
+from gearidae.laws.shaft.own import largest_torque, law_knots, shortest_sector
 from gearidae.laws.shaft.schedule import LEAST_CUBIC, fastest_schedule, pack_schedule, steep_knots
 from gearidae.laws.shafts import ACTING, SHAFT_LAWS, has_law, is_held, sampled_laws
 from gearidae.scene import Drive, GearScene, Knots, Load, Scene
@@ -96,6 +96,7 @@ def add_torques(s: Record, tables: Tables, scene: GearScene, begin: float) -> No
             s.law_watched |= int(torque.law_unknown or s.law_switches)
             end = begin + scene.run.duration
             knots |= {t / tau for t in law_knots(law.law.name, numbers, begin, end)}
+            torque.law_sector = shortest_sector(law.law.name, numbers, begin, end)
         torque.takes_angle = int(torque.takes_angle or bool(orders))
         s.angle_omega = max(float(s.angle_omega), highest * float(s.base_pitch) / radius)
         fastest = max([fastest, *(frequency for _, frequency, _ in harmonics)])

@@ -32,7 +32,7 @@ LOOKS: Final = 65
 ANGLES: Final = 24
 """and angles of the shaft at each of them."""
 JUMP_LOOKS: Final = 100_000
-"""Times in a run at which a law that says nothing is looked at for jumps in time."""
+"""Times in a run, and angles in a turn, at which a law that says nothing is looked at for jumps."""
 HALVINGS: Final = 100
 """Of the time between two looks, at most: a jump is then known to rounding."""
 SPEED_HALVINGS: Final = 8
@@ -145,38 +145,78 @@ def found_jumps(law: TorqueLaw, numbers: Any, begin: float, end: float) -> list[
     times = np.linspace(begin, end, JUMP_LOOKS + 1)
     with _refusing(law.name, "this torque law"):
         search = _jump_search(law.function, law.takes_angle, law.has_force)
-        return sorted({float(t) for at in (0.0, 1.0) for t in search(times, at, numbers)})
+        return sorted({float(t) for at in (0.0, 1.0) for t in search(times, False, 0.0, at, numbers)})
+
+
+def found_angles(name: str, parameters: Sequence[float], begin: float, end: float) -> list[list[float]]:
+    """Angles [rad] of a turn just behind the jumps of a law that says nothing, at two times of a run.
+
+    Parameters
+    ----------
+    name : str
+        Of a registered law.
+    parameters : sequence of float
+    begin, end : float
+        Of the run [s].
+
+    Returns
+    -------
+    list of list of float
+        At the beginning at rest, and in the middle at 1 rad/s; empty for a law that does not know the angle or says
+        where it jumps.
+    """
+    law, numbers = torque_law(name), np.array(parameters, dtype=np.float64)
+    if law.is_declared or not law.takes_angle:
+        return []
+    angles = np.linspace(0.0, 2.0 * math.pi, JUMP_LOOKS + 1)
+    with _refusing(law.name, "this torque law"):
+        search = _jump_search(law.function, law.takes_angle, law.has_force)
+        looks = ((begin, 0.0), (0.5 * (begin + end), 1.0))
+        return [[float(angle) for angle in search(angles, True, t, speed, numbers)] for t, speed in looks]
+
+
+def shortest_sector(name: str, parameters: Sequence[float], begin: float, end: float) -> float:
+    """Least angle [rad] between two jumps of a law, of those that `found_angles` finds; 0 if it finds none.
+
+    No less than the distance of two looks: what is shorter is an end of the turn, on both sides of which jumps are
+    found.
+    """
+    turn = 2.0 * math.pi
+    found = [angles for angles in found_angles(name, parameters, begin, end) if angles]
+    least = min((float(np.diff([*angles, angles[0] + turn]).min()) for angles in found), default=0.0)
+    return max(least, turn / JUMP_LOOKS) if found else 0.0
 
 
 @cache
 def _jump_search(function: Callable[..., Any], takes_angle: bool, has_force: bool) -> Any:
-    """Compile the search for jumps of a law."""
+    """Compile the search for jumps of a law, along the time or along the angle."""
     from gearidae.compiled.cache import numba
 
     law: Any = numba.njit(error_model="numpy")(getattr(function, "py_func", function))
 
     @numba.njit(error_model="numpy")
-    def torque(t: float, at: float, p: Any) -> Any:
-        number = law(t, at, at, p) if takes_angle else law(t, at, p)
+    def torque(x: float, by_angle: bool, t: float, at: float, p: Any) -> Any:
+        then, angle = (t, x) if by_angle else (x, at)
+        number = law(then, angle, at, p) if takes_angle else law(then, at, p)
         return number[0] if has_force else number
 
     @numba.njit(error_model="numpy")
-    def search(times: Any, at: float, p: Any) -> Any:
-        values = np.empty(times.size)
-        for i in range(times.size):
-            values[i] = torque(times[i], at, p)
+    def search(way: Any, by_angle: bool, t: float, at: float, p: Any) -> Any:
+        values = np.empty(way.size)
+        for i in range(way.size):
+            values[i] = torque(way[i], by_angle, t, at, p)
         enough, found = LEAST_JUMP * (values.max() - values.min()), []
-        for i in range(times.size - 1):
+        for i in range(way.size - 1):
             change = abs(values[i + 1] - values[i])
             if not change > enough:
                 continue
-            a, b, low, high = times[i], times[i + 1], values[i], values[i + 1]
+            a, b, low, high = way[i], way[i + 1], values[i], values[i + 1]
             for _ in range(HALVINGS):
                 middle = 0.5 * (a + b)
                 # of what is smooth, the change in the half shrinks with it
                 if not a < middle < b or abs(high - low) < 0.5 * change:
                     break
-                value = torque(middle, at, p)
+                value = torque(middle, by_angle, t, at, p)
                 if abs(value - low) > abs(high - value):
                     b, high = middle, value
                 else:
@@ -371,20 +411,27 @@ def law_jump(
     first, last : tuple of two floats
         Angle [rad] and scaled speed of the shaft at both ends.
     """
-    fourth, low, high, sign = 0.0, math.inf, -math.inf, 1.0
-    for i in range(5):
-        share = 0.25 * i
-        value = law_value(
-            m,
-            shaft,
-            t + share * h,
-            first[0] + share * (last[0] - first[0]),
-            first[1] + share * (last[1] - first[1]),
-        )
-        low, high = min(low, value), max(high, value)
-        fourth += sign * (1.0 if i in (0, 4) else 6.0 if i == 2 else 4.0) * value
-        sign = -sign
-    return high - low if abs(fourth) > MISFIT * (high - low) else 0.0
+    low, high, jumps, parts = math.inf, -math.inf, False, 1
+    sector = m.scene.torque[shaft].law_sector
+    if sector > 0.0:  # five values of a longer way may lie in sectors that are alike
+        parts = math.ceil(max(abs(last[0] - first[0]) / sector, 1.0))
+    for part in range(parts):
+        fourth, least, most, sign = 0.0, math.inf, -math.inf, 1.0
+        for i in range(5):
+            share = (part + 0.25 * i) / parts
+            value = law_value(
+                m,
+                shaft,
+                t + share * h,
+                first[0] + share * (last[0] - first[0]),
+                first[1] + share * (last[1] - first[1]),
+            )
+            least, most = min(least, value), max(most, value)
+            fourth += sign * (1.0 if i in (0, 4) else 6.0 if i == 2 else 4.0) * value
+            sign = -sign
+        jumps |= abs(fourth) > MISFIT * (most - least)
+        low, high = min(low, least), max(high, most)
+    return high - low if jumps else 0.0
 
 
 @compiled
@@ -442,6 +489,7 @@ OWN = ShaftLaw(
         ("law_count", INT),  # parameters of the law, whose address is in `WORK` [1]
         ("law_at", INT),  # the parameters among the tables [index]
         ("law_unknown", INT),  # 1 if the law says nothing of where it jumps
+        ("law_sector", REAL),  # least angle between two jumps found of it, 0 without any [rad]
         ("law_torque", REAL),  # unit of the law's torque [N m]
         ("law_speed", REAL),  # unit of the shaft's speed [rad/s]
     ),
