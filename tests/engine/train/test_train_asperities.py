@@ -24,7 +24,7 @@ from gearidae.records import EventKind
 from gearidae.scene import Scene
 
 SPEED, FORCE = 5e-6, 1e-4
-"""Joining asperities multiply rounding, which other processors do otherwise: speeds by up to 1.2e-6, times by 5e-12 s."""
+"""Joining asperities multiply rounding, which other processors do otherwise: speeds by up to 1.2e-6, times by 5 ps."""
 DISCRETE = {
     "contact.roughness": "discrete",
     "contact.asperity": "jkr",
