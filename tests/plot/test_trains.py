@@ -72,6 +72,14 @@ def test_a_picture_names_shafts_and_the_order_of_the_driver(run):
     assert words["idler"] == 2.0
 
 
+@pytest.mark.parametrize(
+    ("name", "label"),
+    [("cycle", "time within the last pitch of output"), ("orders", "order (per turn of output)")],
+)
+def test_an_axis_names_the_judged_shaft(run, name, label):
+    assert getattr(gd.plot, name)(run).get_xlabel().startswith(label)
+
+
 def test_an_aliased_record_names_the_highest_mode_of_the_train(run):
     """6.05e6 rad/s under steady forces; here under the mean force of the record."""
     with pytest.warns(UserWarning, match="below twice the frequency of the loaded contact") as caught:

@@ -39,7 +39,7 @@ def summary_rows(ds: xr.Dataset) -> list[Row]:
     if summary := summary_of(ds):
         rows += _with_reach(ds, _summary_rows(summary.as_plain()))
     rows += _standing_rows(ds)
-    if is_train(ds) and not ds["drive_work"].dims:
+    if is_train(ds) and "drive_work" in ds and not ds["drive_work"].dims:
         rows += _work_rows(ds)
     if numbers := balance_of(ds):
         rows += _with_reach(ds, _balance_rows(numbers))

@@ -141,7 +141,7 @@ def specimens(ds: xr.Dataset, ax: Axes | None = None, *, of: str | None = None) 
         color=POSITIVE,
         marker=".",
         linewidth=line_width(1.2),
-        label="one gear each",
+        label="one train each" if "judged_shaft" in ds.attrs else "one gear each",
     )
     mean = float(values.mean())
     mark_value(ax.axvline, mean, "mean")

@@ -79,7 +79,7 @@ def outcome(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     ax = new_axes(ax, height=3.4 if len(dims) == 1 else 4.2)
     axes = [parameter_axis(ds[dim]) for dim in dims]
     if len(dims) == 1:
-        _bars(ax, axes[0], judged)
+        _bars(ax, axes[0], judged, ds.attrs.get("judged_shaft"))
     else:
         _fields(ax, axes[0], axes[1], np.array([result.verdict for result in judged], dtype=object))
     return ax
@@ -90,9 +90,13 @@ def style_of(verdict: str) -> Look:
     return _LOOKS.get(verdict, _UNKNOWN)
 
 
-def _bars(ax: Axes, along: ParameterAxis, judged: Sequence[GearOutcome | RollerOutcome]) -> None:
-    """One bar a run, over one parameter."""
+def _bars(
+    ax: Axes, along: ParameterAxis, judged: Sequence[GearOutcome | RollerOutcome], shaft: str | None
+) -> None:
+    """One bar a run, over one parameter; of a train its judged shaft is named."""
     lows, highs, unit, words = _extents(judged)
+    if shaft:
+        words = words.replace("gear speed", f"speed of {shaft}")
     largest = float(np.nanmax(np.abs([*lows, *highs, 0.0])))
     scale = scale_for(largest, unit) if unit == "N" else scaled(largest, unit)
     lows, highs = lows * scale.factor, highs * scale.factor

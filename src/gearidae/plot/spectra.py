@@ -87,7 +87,8 @@ def cycle(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     harmonics = scene_of(ds).get("drive", {}).get("harmonic", [])
     driven = [float(harmonic["frequency"]) for harmonic in harmonics if "frequency" in harmonic][:1]
     by_drive = bool(driven) and driven[0] * float(ds["time"][-1] - ds["time"][0]) > 1.0
-    name = "cycle of the drive" if by_drive else "pitch of the gear"
+    shaft = ds.attrs.get("judged_shaft")  # of a train
+    name = "cycle of the drive" if by_drive else f"pitch of {shaft or 'the gear'}"
     pitch = 2.0 * math.pi / judged_teeth(scene_of(ds)).gear_teeth
     drawn = []
     for run in shown:
@@ -109,7 +110,7 @@ def cycle(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
             label=run.label,
         )
     ax.set_xlabel(f"time within the last {name} ({scale.unit})")
-    ax.set_ylabel("gear speed (rad/s)")
+    ax.set_ylabel(f"speed of {shaft} (rad/s)" if shaft else "gear speed (rad/s)")
     tidy(ax)
     legend(ax, shown)
     return ax
@@ -233,7 +234,7 @@ def orders(ds: xr.Dataset, ax: Axes | None = None) -> Axes:
     else:
         _mark(ax, mesh / gears.pinion_teeth, gears.pinion)
     _mark_all(ax, [], float(mesh), [])
-    ax.set_xlabel("order (per turn of the gear)")
+    ax.set_xlabel(f"order (per turn of {ds.attrs.get('judged_shaft', 'the gear')})")
     _note_aliases(ax, alias_note(ds))
     ax.set_ylabel("power spectral density\n((rad/s)²)")
     tidy(ax)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Container
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Final
@@ -60,7 +61,9 @@ def pair_of(scene: TrainScene, name: str) -> GearScene:
             _train_key(mesh, error.key, [*scene.shafts], scene.meshes[name].own("contact")),
             error.value,
         )
-        allowed = error.allowed.replace("the pinion", mesh.driver).replace("the gear", mesh.driven)
+        allowed = error.allowed
+        for word, gear in (("pinion", mesh.driver), ("gear", mesh.driven)):
+            allowed = re.sub(rf"\bthe {word}\b", gear, allowed)
         if key == "initial.gap" and mesh.offset != 0.0:
             key, value, allowed = f"meshes.{name}.offset", mesh.offset, f"with it initial.gap {allowed}"
         raise SceneError(key, value, allowed) from error

@@ -59,7 +59,7 @@ def work_shares(ds: xr.Dataset) -> list[Share]:
     SceneError
         If it is no single run of a train of several meshes.
     """
-    if not is_train(ds) or ds["drive_work"].dims:
+    if not is_train(ds) or "drive_work" not in ds or ds["drive_work"].dims:
         raise SceneError("dataset", type(ds).__name__, "must be a single run of a train of several meshes")
     drive = float(ds["drive_work"])
     if math.isnan(drive):
