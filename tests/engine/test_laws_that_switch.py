@@ -237,7 +237,7 @@ def test_a_law_that_a_small_force_drives_back_over_its_jump_chatters(name, way):
     run = solve(scene, backend=backend)
     assert run.status == "law_chatter"
     assert 0.056 < run.reached < 0.0568
-    assert run.statistics.steps < 500_000  # some seconds; a run that crawls takes millions
+    assert run.statistics.steps < 5_000  # a run that crawls takes millions
 
 
 def test_a_chattering_law_is_said_with_time_speed_and_what_helps():
