@@ -15,6 +15,8 @@ import gearidae as gd
 from reference.own_pair import OWN_PAIR
 
 FEW, MANY = 40, 2_000
+CHAOTIC = 21_215
+"""A scene whose gears ring on single asperities, so that its end is another one at each tolerance."""
 LOSSES = (
     "drag_loss", "dry_loss", "damping_loss", "film_loss", "adhesion_loss", "drive_friction_loss", "coast_friction_loss",
     "pinion_hub_loss", "gear_hub_loss", "pin_loss",
@@ -213,23 +215,28 @@ def _changes_by_torques(scene, ds):
     assert abs(float(momentum[-1] - momentum[0]) - impulse) <= 2e-3 * size, "torques change the momentum"
 
 
+def _continued(scene, rtol):
+    """Speed of the gear at the end of a run that is cut in two and continued [rad/s]."""
+    changes = {"run.duration": 0.5 * scene.run.duration, "run.samples": 3}
+    half = gd.simulate(scene.replace(changes), rtol=rtol)
+    return float(gd.simulate(scene.replace(changes), rtol=rtol, start=half).gear_speed[-1])
+
+
 def _continues(scene, looser, ds):
-    """Ringing multiplies what a restart changes: a thousandth of the swing, or thrice what the tolerance changes.
+    """Ringing multiplies what a restart changes: a thousandth of the swing, or twice what the tolerance changes.
 
-    Of gears that ring on single asperities both differences are draws from one spread, of which a single time says
-    little: the largest in the last fifth of the run are compared.
+    Of gears that ring on single asperities both differences are draws from one spread, of which the first is more than
+    twice the second in 3 of 10 scenes. There a thousandth of the tolerance decides: what a wrong restart changes stays.
     """
-    behind = (len(ds.time) - 1) // 2
-    changes = {"run.duration": 0.5 * scene.run.duration, "run.samples": behind + 1}
-    half = gd.simulate(scene.replace(changes), rtol=1e-7)
-    rest = gd.simulate(scene.replace(changes), rtol=1e-7, start=half)
-    late = slice(-(2 * behind) // 5, None)
-    whole, loose, continued = (run.gear_speed.values[late] for run in (ds, looser, rest))
-    allowed = max(1e-3 * np.ptp(ds.gear_speed.values), 3.0 * np.abs(loose - whole).max())
-    assert np.abs(continued - whole).max() <= allowed, "a continued run is the whole"
+    last, swing = float(ds.gear_speed[-1]), float(np.ptp(ds.gear_speed.values))
+    difference = abs(_continued(scene, 1e-7) - last)
+    if difference > max(1e-3 * swing, 2.0 * abs(last - float(looser.gear_speed[-1]))):
+        whole = float(gd.simulate(scene, rtol=1e-10).gear_speed[-1])
+        allowed = max(1e-3 * swing, 0.1 * difference)
+        assert abs(_continued(scene, 1e-10) - whole) <= allowed, "a continued run is the whole"
 
 
-@pytest.mark.parametrize("seed", range(FEW))
+@pytest.mark.parametrize("seed", [*range(FEW), CHAOTIC])
 def test_a_drawn_run(seed):
     check(seed)
 

@@ -7,9 +7,9 @@ import math
 import numpy as np
 
 import gearidae as gd
+from gearidae.laws.frictions import LAWS_OF_SHAFTS
 from gearidae.laws.law import SHAFT_NAMES
 from gearidae.laws.pairs import MESH_LAWS
-from gearidae.laws.shafts import SHAFT_LAWS
 
 __all__ = ["CHANGES", "HALF", "SAMPLES", "scene_with"]
 
@@ -106,7 +106,7 @@ CHANGES = {
             for shaft in SHAFT_NAMES
             for constant in law.coefficients
         }
-        for law in SHAFT_LAWS
+        for law in LAWS_OF_SHAFTS
         if any(constant.key for constant in law.coefficients)
     },
 }
