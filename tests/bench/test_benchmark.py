@@ -29,7 +29,7 @@ def result(tmp_path_factory):
         patch.setenv("GEARIDAE_REFERENCES", str(folder))
         measured = run_benchmark(
             [scene],
-            Settings(rounds=2, longest=1.0, share=1.0, every=2),
+            Settings(rounds=2, longest=0.5, share=0.5, every=3),
             contenders=[*explicit_contenders(), broken, absent],
             beyond=False,
             report=WORDS.append,

@@ -84,7 +84,14 @@ def test_a_roller_meets_three_asperities(backend, rtol, allowed):
     assert abs(solution.balance.residual) < 1e-8 * lost
 
 
-@pytest.mark.parametrize(("backend", "rtol", "allowed"), [("native", 1e-10, 1e-6), ("sksundae", 1e-8, 1e-5)])
+@pytest.mark.parametrize(
+    ("backend", "rtol", "allowed"),
+    [
+        ("native", 1e-10, 1e-6),
+        ("sksundae", 1e-6, 1e-3),
+        pytest.param("sksundae", 1e-8, 1e-5, marks=pytest.mark.by_hand),
+    ],
+)
 def test_gears_with_ten_listed_asperities(backend, rtol, allowed):
     expected = NUMBERS["gear_explicit"]["coated"]
     solution = run(TEN.replace({"run.rtol": rtol}), backend)

@@ -140,7 +140,7 @@ def test_no_dip_of_the_load_is_missed(dip, method):
     assert_balanced(run.balance, scene)
 
 
-@pytest.mark.parametrize("method", ["auto", "bdf"])
+@pytest.mark.parametrize("method", ["auto", pytest.param("bdf", marks=pytest.mark.by_hand)])
 @pytest.mark.parametrize("dip", often([(500.0, 0.05, 0.06), (100.0, 0.3, 0.1), (2e4, 0.01, 0.14)], 3))
 def test_no_dip_is_missed_by_the_portable_driver(dip, method):
     scene = dipping(*dip, **{"run.method": method})

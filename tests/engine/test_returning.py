@@ -115,7 +115,7 @@ def test_four_exits_are_counted_from_the_last_deep_contact(changes):
     assert changes[1][1] == pytest.approx(exits[5], rel=1e-12, abs=0)
 
 
-@pytest.mark.parametrize("driver", ["native", "sksundae"])
+@pytest.mark.parametrize("driver", ["native", pytest.param("sksundae", marks=pytest.mark.by_hand)])
 def test_a_run_can_be_resumed_before_between_and_after_the_changes(changes, driver):
     whole = run(SCENE, driver)
     rows, seen = rows_of(whole), set()

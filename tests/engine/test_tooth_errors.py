@@ -101,9 +101,7 @@ def runs():
 # -- numbers of an independent integrator ----------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("changes", "sample", "expected", "backend"), in_both(EXPECTED, also=(ONE_OF_EACH, RUNOUT))
-)
+@pytest.mark.parametrize(("changes", "sample", "expected", "backend"), in_both(EXPECTED, also=(RUNOUT,)))
 def test_motion_is_that_of_an_independent_integrator(runs, changes, sample, expected, backend):
     """To the digits that are given: of speeds a few tolerances, of forces half of the last digit."""
     samples = runs(changes, backend).samples

@@ -125,6 +125,7 @@ print(count.n - begun)
 """
 
 
+@pytest.mark.by_hand  # that of a shaft is in the suite
 def test_a_law_compiles_alone(tmp_path, monkeypatch):
     """Some dozens of functions and not the solver's six hundred, and none in a second process."""
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
