@@ -20,7 +20,7 @@ SIDES = {
     ("name", "coating", "duration"),
     [
         ("teodorescu2009_low_speed", {"sam_fraction": 1.0}, 4e-3),
-        ("teodorescu2009_low_speed", {"sam_fraction": 0.5}, 3e-3),
+        pytest.param("teodorescu2009_low_speed", {"sam_fraction": 0.5}, 3e-3, marks=pytest.mark.by_hand),
         ("teodorescu2009", {"sam_fraction": 0.0}, 4e-6),
         ("teodorescu2009_low_speed", SIDES, 3e-3),
     ],

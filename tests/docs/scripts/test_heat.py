@@ -13,6 +13,7 @@ from gearidae_pages.heat import KELVIN, shaken, sticks
 WORN = gd.preset("teodorescu2009_low_speed").replace({"coating.sam_fraction": 0.5})
 
 
+@pytest.mark.by_hand  # scripts of pages change hardly ever
 def test_without_heat_the_gears_are_those_of_the_engine():
     """Beyond the first mesh exit; the tabulated force is good to some thousandths in a ringing contact."""
     cold = shaken(WORN, 0.0, 0, kelvin=0.0, duration=0.06)

@@ -24,6 +24,7 @@ def test_ends_that_are_no_bracket_are_told():
     assert all(math.isnan(end) for end in sticking_limit(LOW, lowest=0.8, highest=0.9))
 
 
+@pytest.mark.by_hand  # scripts of pages change hardly ever
 def test_the_table_has_a_row_for_every_change():
     first, other = sensitivities({"surface.energy": (0.8,)})
     assert other.key == "surface.energy"
