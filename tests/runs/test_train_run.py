@@ -108,7 +108,7 @@ def test_a_run_without_its_balance_has_no_works(tmp_path, capfd):
     case.write_text(dump_case(scene))
     assert main(["run", str(case), "-o", str(tmp_path / "out.nc")]) == 0
     assert "nan" not in capfd.readouterr().out
-    assert main(["plot", str(tmp_path / "out.nc")]) == 0
+    assert main(["plot", str(tmp_path / "out.nc"), "-o", str(tmp_path / "out.png")]) == 0
     with pytest.raises(gd.SceneError, match="has not followed its balance"):
         gd.plot.work(gd.open(tmp_path / "out.nc"))
 

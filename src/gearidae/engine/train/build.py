@@ -82,7 +82,6 @@ def make_train(scene: TrainScene, start: Start = AT_ONCE) -> TrainProblem:
     scene : Scene
     start : Start, optional
         Of a run that goes on from another, whose time alone is used.
-
     """
     make_part_ready(TRAIN)
     train = scene.train
