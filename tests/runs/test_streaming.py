@@ -156,6 +156,8 @@ def test_killed_within_any_write_the_archive_is_sound_and_the_run_goes_on(path, 
         die_at_write(number)
         simulate(path, resume=True)
 
+    assert end_of(child(killed, 0)) == -signal.SIGKILL
+    assert not is_there(path)  # the journal appears with its head
     for number in (2, 3, 5, 40, 7, 66, 14, 2):
         assert end_of(child(killed, number)) == -signal.SIGKILL
         assert_sound(path, whole)

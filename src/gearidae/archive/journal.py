@@ -23,7 +23,7 @@ from typing import Any, Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from gearidae.archive.disk import sync
+from gearidae.archive.disk import part_beside, sync
 
 SIGNATURE: Final = b"gearidae journal 1\n"
 """How the file begins; the number is that of the layout."""
@@ -129,13 +129,15 @@ class Journal:
 
     @classmethod
     def create(cls, path: Path, kind: str, **head: Any) -> Journal:
-        """Make a journal in the place of whatever is there; nothing is left behind where the disk does not take it."""
+        """Make a journal in the place of whatever is there; it appears with its head or not at all."""
+        # what a kill leaves of it goes with the next that is written under the archive's name
+        part = part_beside(path.with_suffix(""))
         try:
-            path.write_bytes(SIGNATURE + b"".join(_packed({"kind": kind, **head}, {})))
-        except OSError:
-            with suppress(OSError):  # a folder is in its place
-                path.unlink(missing_ok=True)
-            raise
+            part.write_bytes(SIGNATURE + b"".join(_packed({"kind": kind, **head}, {})))
+            part.replace(path)
+        finally:
+            with suppress(OSError):
+                part.unlink(missing_ok=True)
         return cls(path, kind, "a")
 
     def frames(self) -> Iterator[Frame | None]:
