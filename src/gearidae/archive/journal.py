@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.archive.disk import part_beside, sync
+from gearidae.archive.netcdf_access import uninterrupted
 
 SIGNATURE: Final = b"gearidae journal 1\n"
 """How the file begins; the number is that of the layout."""
@@ -132,12 +133,13 @@ class Journal:
         """Make a journal in the place of whatever is there; it appears with its head or not at all."""
         # what a kill leaves of it goes with the next that is written under the archive's name
         part = part_beside(path.with_suffix(""))
-        try:
-            part.write_bytes(SIGNATURE + b"".join(_packed({"kind": kind, **head}, {})))
-            part.replace(path)
-        finally:
-            with suppress(OSError):
-                part.unlink(missing_ok=True)
+        with uninterrupted():  # a Ctrl-C between opening and closing would leave the file open
+            try:
+                part.write_bytes(SIGNATURE + b"".join(_packed({"kind": kind, **head}, {})))
+                part.replace(path)
+            finally:
+                with suppress(OSError):
+                    part.unlink(missing_ok=True)
         return cls(path, kind, "a")
 
     def frames(self) -> Iterator[Frame | None]:
