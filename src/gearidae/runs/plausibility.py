@@ -72,7 +72,7 @@ def _laws(scene: Scene) -> list[str]:
                 f"pulses than {with_prefix(end / JUMP_LOOKS, 's')} may be missed: register it with "
                 "knots=, the times at which it jumps, or switch=, a function whose zeros are where it does"
             )
-        angles = max(found_angles(name, numbers, 0.0, end), key=len, default=[])
+        angles = max(found_angles(name, numbers, 0.0, end), key=len, default=())
         if angles:
             more = f" and {len(angles) - 1} more in a turn" if len(angles) > 1 else ""
             lines.append(

@@ -11,7 +11,7 @@ import ctypes
 import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from functools import cache
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -128,11 +128,14 @@ def law_knots(name: str, parameters: Sequence[float], begin: float, end: float) 
     SceneError
         If what the law says is no list of finite times.
     """
-    law, numbers = torque_law(name), np.array(parameters, dtype=np.float64)
+    law = torque_law(name)
     if law.knots is None:
-        return [] if law.switch is not None else found_jumps(law, numbers, begin, end)
+        if law.switch is not None:
+            return []
+        found = _found_jumps(law, tuple(parameters), (begin, end), False, ((0.0, 0.0), (0.0, 1.0)))
+        return sorted({t for times in found for t in times})
     try:
-        times = np.array(law.knots(numbers, end), dtype=np.float64).ravel()
+        times = np.array(law.knots(np.array(parameters, dtype=np.float64), end), dtype=np.float64).ravel()
     except (TypeError, ValueError, IndexError, ArithmeticError) as error:
         raise SceneError("law.name", name, f"its knots are no list of times: {error}") from error
     if not np.isfinite(times).all():
@@ -140,15 +143,9 @@ def law_knots(name: str, parameters: Sequence[float], begin: float, end: float) 
     return [float(t) for t in times]
 
 
-def found_jumps(law: TorqueLaw, numbers: Any, begin: float, end: float) -> list[float]:
-    """Times [s] just behind the jumps in time of a law, at rest and at 1 rad and 1 rad/s."""
-    times = np.linspace(begin, end, JUMP_LOOKS + 1)
-    with _refusing(law.name, "this torque law"):
-        search = _jump_search(law.function, law.takes_angle, law.has_force)
-        return sorted({float(t) for at in (0.0, 1.0) for t in search(times, False, 0.0, at, numbers)})
-
-
-def found_angles(name: str, parameters: Sequence[float], begin: float, end: float) -> list[list[float]]:
+def found_angles(
+    name: str, parameters: Sequence[float], begin: float, end: float
+) -> tuple[tuple[float, ...], ...]:
     """Angles [rad] of a turn just behind the jumps of a law that says nothing, at two times of a run.
 
     Parameters
@@ -161,18 +158,15 @@ def found_angles(name: str, parameters: Sequence[float], begin: float, end: floa
 
     Returns
     -------
-    list of list of float
+    tuple of tuple of float
         At the beginning at rest, and in the middle at 1 rad/s; empty for a law that does not know the angle or says
         where it jumps.
     """
-    law, numbers = torque_law(name), np.array(parameters, dtype=np.float64)
+    law = torque_law(name)
     if law.is_declared or not law.takes_angle:
-        return []
-    angles = np.linspace(0.0, 2.0 * math.pi, JUMP_LOOKS + 1)
-    with _refusing(law.name, "this torque law"):
-        search = _jump_search(law.function, law.takes_angle, law.has_force)
-        looks = ((begin, 0.0), (0.5 * (begin + end), 1.0))
-        return [[float(angle) for angle in search(angles, True, t, speed, numbers)] for t, speed in looks]
+        return ()
+    looks = ((begin, 0.0), (0.5 * (begin + end), 1.0))
+    return _found_jumps(law, tuple(parameters), (0.0, 2.0 * math.pi), True, looks)
 
 
 def shortest_sector(name: str, parameters: Sequence[float], begin: float, end: float) -> float:
@@ -185,6 +179,25 @@ def shortest_sector(name: str, parameters: Sequence[float], begin: float, end: f
     found = [angles for angles in found_angles(name, parameters, begin, end) if angles]
     least = min((float(np.diff([*angles, angles[0] + turn]).min()) for angles in found), default=0.0)
     return max(least, turn / JUMP_LOOKS) if found else 0.0
+
+
+@lru_cache(maxsize=64)
+def _found_jumps(
+    law: TorqueLaw,
+    parameters: tuple[float, ...],
+    way: tuple[float, float],
+    by_angle: bool,
+    looks: tuple[tuple[float, float], ...],
+) -> tuple[tuple[float, ...], ...]:
+    """Points just behind the jumps of a law along a way, in angle [rad] or in time [s], for each look.
+
+    A look along the angle is a time and a speed; along the time its second number is both angle and speed. Results are
+    kept: a run, its warnings and the members of a study ask for the same, and a search takes 2 ms.
+    """
+    numbers, points = np.array(parameters, dtype=np.float64), np.linspace(*way, JUMP_LOOKS + 1)
+    with _refusing(law.name, "this torque law"):
+        search = _jump_search(law.function, law.takes_angle, law.has_force)
+        return tuple(tuple(map(float, search(points, by_angle, t, at, numbers))) for t, at in looks)
 
 
 @cache
