@@ -54,13 +54,11 @@ def list_elements(m: Model, t: float, y: Floats) -> None:
     work.load[0], work.load[1] = vector_sum(m, Mesh(drive, coast, 0.0, 0.0))
     pin, joints = pin_force(m, t, y, 0.0), joint_friction(m, t, y)
     work.pin[0], work.pin[1] = pin
-    for shaft in (LOAD, DRIVE):
+    of_gear, of_pinion = (LOAD, y[W], 0.0, 1.0, HELD_GEAR), (DRIVE, 0.0, 1.0, 0.0, HELD_PINION)
+    for shaft, speed, pinion, gear, hold in (of_gear, of_pinion):
         if has_element(m, shaft):
-            limit = shaft_limit(m, shaft, t, y, y[W] if shaft == LOAD else 0.0, joints, pin)
-            if shaft == LOAD:
-                _set(work.element[count], 0.0, 1.0, limit, HELD_GEAR)
-            else:
-                _set(work.element[count], 1.0, 0.0, limit, HELD_PINION)
+            limit = shaft_limit(m, shaft, t, y, speed, joints, pin)
+            _set(work.element[count], pinion, gear, limit, hold)
             work.element[count].by_load = joints[shaft].by_load
             count += 1
     work.count = count
