@@ -55,7 +55,15 @@ def scene_of(ds: xr.Dataset) -> dict[str, Any]:
 
 def is_roller(ds: xr.Dataset) -> bool:
     """Whether a dataset is of a roller scene, else of a gear pair."""
-    return scene_of(ds).get("roller") is not None
+    return what_of(ds) == "roller"
+
+
+def what_of(ds: xr.Dataset) -> str:
+    """What runs or the members of a study are of: ``roller``, ``train`` of several meshes, or ``gear``."""
+    scene = scene_of(ds)
+    if scene.get("roller") is not None:
+        return "roller"
+    return "train" if len(scene.get("meshes") or ()) > 1 else "gear"
 
 
 TABLE_OF_PAIR: Final = "pair along shaft and mesh"

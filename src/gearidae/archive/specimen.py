@@ -7,7 +7,7 @@ from typing import Final
 
 import xarray as xr
 
-from gearidae.archive.select import is_roller, is_train, scene_of
+from gearidae.archive.select import scene_of, what_of
 
 SEED_KEYS: Final = ("contact.seed", "mesh.pitch_error_seed")
 """Keys that number what is drawn: discrete asperities, and errors of single teeth."""
@@ -37,8 +37,9 @@ def specimen_note(ds: xr.Dataset) -> str:
         return ""
     if has_seeds(ds):
         return f"Runs of different seeds are specimens of one design: {_MEANS}."
-    what = "roller" if is_roller(ds) else "train" if is_train(ds) else "gear"
-    return f"This is one specimen: another contact.seed is another {what} of the same design. {_MEANS}."
+    return (
+        f"This is one specimen: another contact.seed is another {what_of(ds)} of the same design. {_MEANS}."
+    )
 
 
 def specimen_label(ds: xr.Dataset) -> str:

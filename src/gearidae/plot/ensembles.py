@@ -10,6 +10,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from gearidae.analysis.verdict.codes import STUCK
+from gearidae.archive.select import what_of
 from gearidae.archive.specimen import SEED_KEYS
 from gearidae.archive.variables import COVERAGE_KEY
 from gearidae.arrays import Floats
@@ -141,7 +142,7 @@ def specimens(ds: xr.Dataset, ax: Axes | None = None, *, of: str | None = None) 
         color=POSITIVE,
         marker=".",
         linewidth=line_width(1.2),
-        label="one train each" if "judged_shaft" in ds.attrs else "one gear each",
+        label=f"one {what_of(ds)} each",
     )
     mean = float(values.mean())
     mark_value(ax.axvline, mean, "mean")

@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 
 from gearidae.archive.output_selection import read_keep
-from gearidae.archive.select import scene_of
+from gearidae.archive.select import what_of
 from gearidae.archive.specimen import SEED_KEYS, has_seeds
 from gearidae.archive.train import judged_view
 from gearidae.archive.train.variables import MESH_TOTALS, OF_JUDGED
@@ -298,8 +298,7 @@ def _mean_rows(ds: xr.Dataset) -> Rows:
             "no index",
             f"{left:.3f} is no first order of a key: scatter between seeds, and interactions",
         )
-    what = "train" if len(scene_of(ds).get("meshes", ())) > 1 else "gear"
-    yield "Means over the seeds", "", f"one {what} is one specimen of the design"
+    yield "Means over the seeds", "", f"one {what_of(ds)} is one specimen of the design"
     figures = {
         name.replace("_", " "): (ds[name].values, str(ds[name].attrs["units"]).replace("rad s-1", "rad/s"))
         for name in _OF_GEARS

@@ -15,7 +15,7 @@ import xarray as xr
 
 from gearidae.archive.output_selection import read_keep
 from gearidae.archive.provenance import provenance
-from gearidae.archive.select import scene_of
+from gearidae.archive.select import what_of
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.runs.execution import RunOptions, prepared
@@ -214,7 +214,7 @@ def _sentence(ds: xr.Dataset) -> str:
     last = ds.isel(by=-1)
     hits, members = int(last["started"]), int(last["members"])
     after = with_prefix(float(last["by"]), "s")
-    what = "trains" if len(scene_of(ds).get("meshes", ())) > 1 else "gears"
+    what = f"{what_of(ds)}s"
     if not members:
         return f"Of none of {ds.sizes['member']} {what} it is known whether it has started after {after}."
     return f"{hits} of {members} {what} have started after {after}: probability {_in_words(last, ds)}."
