@@ -27,15 +27,10 @@ from gearidae.scene.scene import is_long_train
 
 SHAFT_COLOURS: Final = ("#d3e5f3", "#f1d9a8", "#cfe8d8", "#ead6e4", "#dddddd", "#f6d9cc")
 """Of the gears of each shaft, again from the first where there are more."""
-_SAMPLES = (
-    "shaft_angle",
-    "shaft_speed",
-    "hub_load",
-    "hub_load_angle",
-    "mesh_force",
-    "pairs_in_contact",
-    "transmission_error",
-)
+OF_SHAFTS: Final = ("shaft_angle", "shaft_speed", "hub_load", "hub_load_angle")
+OF_MESHES: Final = ("mesh_force", "pairs_in_contact")
+"""Samples that a picture of the whole train shows, of each shaft and of each mesh."""
+_SAMPLES: Final = (*OF_SHAFTS, *OF_MESHES, "transmission_error")
 _WIDTH, _STRIP, _LEGEND, _TITLE = 7.6, 1.15, 0.3, 0.35  # inches
 LONGEST, SHORTEST = 0.17, 0.12
 """Longest arrow over the diagonal of the picture, and shortest over the longest: it shows where a small load points."""
@@ -150,7 +145,7 @@ def train_states(run: xr.Dataset, times: ArrayLike) -> list[TrainState]:
     before = np.maximum(after - 1, 0)
     nearest = np.where(wanted - recorded[before] <= recorded[after] - wanted, before, after)
     picked = run[list(_SAMPLES)].isel(time=nearest).load()
-    columns = [picked[name].transpose("time", ...).values for name in _SAMPLES[:-1]]
+    columns = [picked[name].transpose("time", ...).values for name in (*OF_SHAFTS, *OF_MESHES)]
     return [TrainState(float(recorded[k]), *row) for k, *row in zip(nearest, *columns, strict=True)]
 
 

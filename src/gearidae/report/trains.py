@@ -13,16 +13,13 @@ from gearidae.archive.select import refuse_parts, run_scene, runs
 from gearidae.arrays import Floats
 from gearidae.errors import SceneError
 from gearidae.plot.train_shape import PlacedGear, pitch_point
-from gearidae.plot.train_view import LONGEST, NO_ARROW, SHORTEST, placed_gears
+from gearidae.plot.train_view import LONGEST, NO_ARROW, OF_MESHES, OF_SHAFTS, SHORTEST, placed_gears
 from gearidae.report.frames import ShownRun, largest_of, pack_frames, picked, range_of, thinning
 from gearidae.report.outcomes import ascending
 from gearidae.report.series import reduced
 from gearidae.scene import is_long_train
 from gearidae.scene.train import Train
 
-_OF_SHAFTS: Final = ("shaft_angle", "shaft_speed", "hub_load", "hub_load_angle")
-_OF_MESHES: Final = ("mesh_force", "pairs_in_contact")
-"""Numbers of a picture for each shaft, and for each mesh."""
 _PLOTS: Final = (("shaft_speed", "shaft"), ("mesh_force", "mesh"), ("hub_load", "shaft"))
 """Curves over time, one for each shaft or mesh."""
 
@@ -56,8 +53,8 @@ def pack_trains(ds: xr.Dataset, most_values: int) -> dict[str, Any]:
     ds = ascending(ds).isel(time=slice(samples))
     members = [run for _, run in runs(ds)]
     shafts, meshes = (ds[dim].values.tolist() for dim in ("shaft", "mesh"))
-    columns = [f"{name} {shaft}" for name in _OF_SHAFTS for shaft in shafts]
-    columns += [f"{name} {mesh}" for name in _OF_MESHES for mesh in meshes]
+    columns = [f"{name} {shaft}" for name in OF_SHAFTS for shaft in shafts]
+    columns += [f"{name} {mesh}" for name in OF_MESHES for mesh in meshes]
     curves = 2 * len(shafts) + len(meshes)
     every, size = thinning(samples, len(members), len(columns), curves, most_values)
     gears: list[dict[str, Any]] = []
@@ -85,7 +82,7 @@ def pack_trains(ds: xr.Dataset, most_values: int) -> dict[str, Any]:
 
 def _samples(ds: xr.Dataset) -> int:
     """Samples that the longest run has."""
-    missing = [name for name in (*_OF_SHAFTS, *_OF_MESHES, "transmission_error") if name not in ds]
+    missing = [name for name in (*OF_SHAFTS, *OF_MESHES, "transmission_error") if name not in ds]
     if missing:
         raise SceneError("explore", missing[0], "the dataset has no samples of it")
     samples = max(_reached(run) for _, run in runs(ds)) if ds.sizes["time"] else 0
@@ -109,7 +106,7 @@ def _frames(run: xr.Dataset, every: int, count: int) -> Floats:
     columns = [
         # float32 keeps the angle of one turn to less than a nanometre of a gear, not that of thousands
         values % (2.0 * math.pi) if name == "shaft_angle" else values
-        for name in (*_OF_SHAFTS, *_OF_MESHES)
+        for name in (*OF_SHAFTS, *OF_MESHES)
         for values in (picked(line, every, count) for line in _lines(run, name))
     ]
     return np.stack(columns, axis=1)

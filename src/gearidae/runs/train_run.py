@@ -133,7 +133,7 @@ def _stream(
             try:
                 save(ds, target, overwrite=True, compress=compress)
             except SceneError as error:
-                raise DiskError(str(error)) from error
+                raise _not_written(left_of(target), target, error, FREE_SPACE) from error
         except KeyboardInterrupt:
             kept = f"the run up to there is in {target}; go on with --resume (resume=True)"
             raise Interrupted(kept, left_of(target)) from None

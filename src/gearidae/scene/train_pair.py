@@ -57,11 +57,8 @@ def pair_of(scene: TrainScene, name: str) -> GearScene:
             run=scene.run.model_copy(update={"judged": None}),
         )
     except SceneError as error:
-        key, value = (
-            _train_key(mesh, error.key, [*scene.shafts], scene.meshes[name].own("contact")),
-            error.value,
-        )
-        allowed = error.allowed
+        key = _train_key(mesh, error.key, [*scene.shafts], scene.meshes[name].own("contact"))
+        value, allowed = error.value, error.allowed
         for word, gear in (("pinion", mesh.driver), ("gear", mesh.driven)):
             allowed = re.sub(rf"\bthe {word}\b", gear, allowed)
         if key == "initial.gap" and mesh.offset != 0.0:

@@ -70,10 +70,11 @@ def work_shares(ds: xr.Dataset) -> list[Share]:
 
 def passed_on(ds: xr.Dataset) -> dict[str, float]:
     """Efficiencies of the meshes and hubs of a run, by their names in `work_shares`; NaN where nothing arrived."""
+    parts = (("mesh", "mesh", "mesh_efficiency"), ("hub of", "shaft", "hub_efficiency"))
     return {
         f"{words} {name}": float(passed)
-        for words, dim in (("mesh", "mesh"), ("hub of", "shaft"))
-        for name, passed in zip(ds[dim].values, ds[f"{words.split()[0]}_efficiency"].values, strict=True)
+        for words, dim, efficiency in parts
+        for name, passed in zip(ds[dim].values, ds[efficiency].values, strict=True)
     }
 
 
