@@ -20,6 +20,7 @@ from gearidae.engine.setup.build import make_problem
 from gearidae.formulas.quadrature import Ends, integral_of_cube, torque_work
 from gearidae.mesh import curvature_radii
 from gearidae.records import Statistics
+from reference.own_pair import RINGING
 
 CASES = Path(__file__).parents[2] / "cases"
 HIGH, LOW = gd.preset("teodorescu2009"), gd.preset("teodorescu2009_low_speed")
@@ -308,22 +309,7 @@ def test_what_formulas_of_ida_damp_stays_within_the_bound():
     It is the work of their formulas alone, which the portable driver has to do with: nothing rubs but a dry load of a
     ten-thousandth of the drive's torque.
     """
-    scene = PAIR.replace(
-        {
-            "contact.bodies": "rigid",
-            "gears.pinion_teeth": 27,
-            "gears.gear_teeth": 50,
-            "gears.module": 3.09e-6,
-            "coating.sam_fraction": 0.5,
-            "drive.torque": 5.9e-18,
-            "drive.schedule": [],
-            "load.torque": 1e-21,
-            "run.duration": 0.015,
-            "run.samples": "off",
-            "run.method": "bdf",
-            "run.rtol": 1e-10,
-        }
-    )
+    scene = PAIR.replace(RINGING | {"run.duration": 0.015, "run.method": "bdf", "run.rtol": 1e-10})
     balance = solve(scene).balance
     assert abs(balance.residual) < 0.7 * balance.bound(scene.run.rtol, roller=False)
 

@@ -17,6 +17,7 @@ import gearidae as gd
 from engine.test_standing import PAIR, held_by_hubs
 from gearidae.mesh import friction
 from properties.test_what_physics_demands import HIGH, SLOW, _dry
+from reference.own_pair import TEETH_27_50
 
 FEW, MANY = 2, 100
 RTOLS = (1e-5, 1e-6, 1e-7)
@@ -77,9 +78,7 @@ def dry_load(seed):
     end = start + float(rng.uniform(0.01, 0.04))
     scene = SLOW.replace(
         {
-            "gears.pinion_teeth": 27,
-            "gears.gear_teeth": 50,
-            "gears.module": 3.09e-6,
+            **TEETH_27_50,
             "coating.sam_fraction": float(rng.uniform(0.3, 0.55)),
             "drive.torque": float(rng.uniform(2.5e-18, 6e-18)),
             "load.torque": float(rng.choice([0.0, 1e-21])),

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import gearidae as gd
-from reference.own_pair import OWN_PAIR
+from reference.own_pair import OWN_PAIR, TEETH_27_50
 
 FEW, MANY = 40, 2_000
 CHAOTIC = 21_215
@@ -151,9 +151,7 @@ def _slow(rng):
     end = start + float(rng.uniform(0.05, 0.2))
     return SLOW.replace(
         {
-            "gears.pinion_teeth": 27,
-            "gears.gear_teeth": 50,
-            "gears.module": 3.09e-6,
+            **TEETH_27_50,
             "drive.torque": float(rng.uniform(2.5e-18, 6e-18)),
             "load.torque": float(rng.choice([0.0, 1e-21])),
             "load.schedule": [[0.0, 0.0], [start, 0.0], [end, float(rng.uniform(2e-18, 8e-18))]],

@@ -1,4 +1,7 @@
-"""The own pair of gears of the start-up and braking tests: 18 and 54 teeth of 3 um, under a dry load and a drag."""
+"""The own pair of gears of the start-up and braking tests: 18 and 54 teeth of 3 um, under a dry load and a drag.
+
+And another that rings, as changes of a scene: 27 and 50 teeth.
+"""
 
 import math
 
@@ -15,3 +18,15 @@ OWN_PAIR = {
     "load": {"torque": 3e-18, "drag": 8e-18},
     "initial": {"gear_speed": 0.0, "gap": 0.1e-6, "mesh_phase": 0.3},
 }
+
+TEETH_27_50 = {"gears.pinion_teeth": 27, "gears.gear_teeth": 50, "gears.module": 3.09e-6}
+RINGING = {
+    **TEETH_27_50,
+    "contact.bodies": "rigid",
+    "coating.sam_fraction": 0.5,
+    "drive.torque": 5.9e-18,
+    "drive.schedule": [],
+    "load.torque": 1e-21,
+    "run.samples": "off",
+}
+"""Changes of a scene: gears that ring in their adhesion, under a dry load of some 1e-4 of the drive's torque."""
