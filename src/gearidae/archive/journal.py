@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearidae.archive.disk import part_beside, sync
-from gearidae.archive.netcdf_access import uninterrupted
+from gearidae.archive.signals import signals_put_off
 
 SIGNATURE: Final = b"gearidae journal 1\n"
 """How the file begins; the number is that of the layout."""
@@ -133,7 +133,7 @@ class Journal:
         """Make a journal in the place of whatever is there; it appears with its head or not at all."""
         # what a kill leaves of it goes with the next that is written under the archive's name
         part = part_beside(path.with_suffix(""))
-        with uninterrupted():  # a Ctrl-C between opening and closing would leave the file open
+        with signals_put_off():  # a Ctrl-C between opening and closing would leave the file open
             try:
                 part.write_bytes(SIGNATURE + b"".join(_packed({"kind": kind, **head}, {})))
                 part.replace(path)

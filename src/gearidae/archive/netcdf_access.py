@@ -4,21 +4,19 @@ from __future__ import annotations
 
 import math
 import os
-import signal
 import sys
 import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from types import FrameType
 from typing import Any, Final, Literal
 
 import netCDF4
 import xarray as xr
 
 from gearidae.archive.integrity import check_content, check_seal
-from gearidae.errors import STOPS
+from gearidae.archive.signals import signals_put_off
 
 _PATIENCE: Final = 5.0
 """Time [s] for which a file's lock is waited for."""
@@ -42,22 +40,10 @@ def uninterrupted() -> Iterator[None]:
     """Hold `LIBRARY`, and put what a signal raises off until the block is left, or the function that this decorates.
 
     xarray takes its locks of HDF5 in Python code: an interrupt between taking one and entering what it guards leaves it
-    taken, and the next call that closes the file waits for ever. Other threads than the main one are never interrupted.
+    taken, and the next call that closes the file waits for ever.
     """
-    handlers = {number: usual for number in STOPS if callable(usual := signal.getsignal(number))}
-    if threading.current_thread() is not threading.main_thread():
-        handlers = {}
-    came: list[tuple[int, FrameType | None]] = []
-    for number in handlers:
-        signal.signal(number, lambda *signalled: came.append(signalled))
-    try:
-        with LIBRARY:
-            yield
-    finally:
-        for number, usual in handlers.items():
-            signal.signal(number, usual)
-        if came:
-            handlers[signal.Signals(came[0][0])](*came[0])
+    with signals_put_off(), LIBRARY:
+        yield
 
 
 @contextmanager
