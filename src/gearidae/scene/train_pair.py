@@ -172,7 +172,6 @@ def check_train(scene: TrainScene) -> None:
             "run.samples",
             "how its contacts ring is not known before: samples must be a number or a rate",
         ),
-        (bool(run.checkpoints), "run.checkpoints", "its checkpoints are where its blocks end"),
     )
     for there, key, reason in refused:
         if there:

@@ -334,7 +334,6 @@ def test_a_wheel_that_stands_back_in_a_reduction_does_so_but_for_the_phase():
         ("run.samples", "ringing"),
         ("run.stop", "sticks"),
         ("run.impacts", True),
-        ("run.checkpoints", [1e-5]),
     ],
 )
 def test_what_a_train_does_not_do_is_refused(key, value):

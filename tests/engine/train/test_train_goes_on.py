@@ -106,6 +106,41 @@ def test_a_continued_run_is_the_whole_run(tables, half, backend):
     assert second.energy["drive_work"] == pytest.approx(whole.energy["drive_work"], rel=close, abs=0.0)
 
 
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize(
+    ("tables", "half"),
+    [
+        (rubbing(), 2.0**-15),
+        (adhering(), 2.0**-14),
+        (split(), 2.0**-15),
+        (stopping(), 2.0**-13),
+        (FLANKS, 2.0**-15),
+    ],
+    ids=["hubs", "adhesion", "loop", "held", "flanks"],
+)
+def test_a_run_cut_at_a_checkpoint_is_the_whole_run_to_the_last_bit(tables, half, backend):
+    if backend == "sksundae":
+        half *= 0.25
+    kept = {"run.checkpoints": [0.5 * half, half]}
+    blocks = []
+    whole = solve_train(scene_of(tables, 2.0 * half, 129, **kept), backend=backend, on_block=blocks.append)
+    assert {0.5 * half, half} <= {block.time for block in blocks}
+    scene = scene_of(tables, half, 65, **kept)
+    first = solve_train(scene, backend=backend)
+    second = solve_train(scene, backend=backend, start=end_of_train(scene, first.checkpoint, 0.0))
+    for name, values in whole.samples.items():
+        joined = np.concatenate([first.samples[name], second.samples[name][..., 1:]], axis=-1)
+        np.testing.assert_array_equal(joined, values, err_msg=name)
+    for name, values in whole.events.items():
+        joined = np.concatenate([first.events[name], second.events[name]])
+        np.testing.assert_array_equal(joined, values, err_msg=name)
+    for table in ("shaft_totals", "mesh_totals"):
+        for name, values in getattr(whole, table).items():
+            np.testing.assert_array_equal(getattr(second, table)[name], values, err_msg=name)
+    assert second.energy == whole.energy
+    assert second.reached == whole.reached
+
+
 CHANGES = {
     "torque": {"drive.torque": 6e-12},
     "dry load": {"load.torque": 1e-11},

@@ -19,7 +19,7 @@ from gearidae.engine.friction.hubs import Loads, Mesh, has_hubs, pin_rate, vecto
 from gearidae.engine.friction.pairs import direction, lever_rate, levers, set_limits
 from gearidae.engine.laws.pairs import mesh_force
 from gearidae.engine.model.record_types import HELD_PAIR
-from gearidae.engine.model.state import COAST, PHASE, Floats, Model, U, V, W
+from gearidae.engine.model.state import COAST, PHASE, Floats, Model, Record, U, V, W
 from gearidae.engine.motion.pair_forces import follow_slopes, is_eliminated, set_deflections
 from gearidae.engine.motion.shafts import forces_at_shafts
 from gearidae.engine.observers.exposures.friction_work import (
@@ -30,6 +30,7 @@ from gearidae.engine.observers.exposures.friction_work import (
     note_power,
 )
 from gearidae.engine.pairs.mesh_error import acceleration_of, error_at
+from gearidae.engine.pairs.orbit import acceleration_of_gap
 from gearidae.engine.pairs.tooth_pairs import flank_of_history
 from gearidae.formulas.quadrature import error_estimate, integral, integral_with_middle
 from gearidae.laws.friction_law import slip_of
@@ -78,10 +79,10 @@ def note_friction(m: Model, t: float, y: Floats) -> float:
         r.power_rate[flank] += power_rate
         note_power(m, noted.history, power, power_rate)
         if flank == COAST:
-            coast += noted.force_rate
+            coast += _force_rate(m, noted, y, surface_speed, shafts)
             coast_friction += rate
         else:
-            drive += noted.force_rate
+            drive += _force_rate(m, noted, y, surface_speed, shafts)
             drive_friction += rate
     if m.scene.friction.joints != 0:
         force_rate = pin_rate(m, t, y, surface_speed, shafts.pinion)
@@ -94,6 +95,18 @@ def note_friction(m: Model, t: float, y: Floats) -> float:
         joints, rates = joint_friction(m, t, y), joint_friction_rate(m, t, y)
         _note_joints(m, shafts, joints, rates, load_rate, force_rate, (surface_speed, y[W]))
     return float(force)
+
+
+@compiled(inline=True)
+def _force_rate(m: Model, noted: Record, y: Floats, surface_speed: float, shafts: Shafts) -> float:
+    """Rate of a noted force, with what it changes by the rate of the gap, as that of a film does."""
+    rate = float(noted.force_rate)
+    if noted.damping != 0.0:
+        e = error_at(m, y[U], y[PHASE])
+        v_rate = acceleration_of(e, surface_speed, y[W], shafts.pinion, shafts.gear)
+        flank = flank_of_history(m, noted.history)
+        rate += noted.damping * acceleration_of_gap(m, flank, noted.relief, y[W], v_rate, shafts.gear)
+    return rate
 
 
 @compiled

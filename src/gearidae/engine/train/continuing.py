@@ -24,7 +24,7 @@ from gearidae.engine.train.layout import TrainOutput, which_rest
 from gearidae.engine.train.observe import kinetic_energy_of, write_stored
 from gearidae.engine.train.record import record_at_shaft
 from gearidae.engine.train.rest import switch_rest
-from gearidae.engine.train.start import take_up, write_own_state
+from gearidae.engine.train.start import begin_anew, take_up, write_own_state
 from gearidae.engine.train.sticking import find_kept, switch_sticking
 from gearidae.records import EventKind, Words
 from gearidae.records.quantity import COUNT_HIGH
@@ -199,7 +199,7 @@ def _carry_state(old: TrainProblem, new: TrainProblem) -> None:
         for name in names:
             records[name] = others[name]
     train = tm.train[0]
-    train.step = min(float(train.step), 0.1 * float(train.tau))
+    begin_anew(tm)
     train.stop_from = float(train.whole_pitches) + float(tm.y[train.load])
 
 

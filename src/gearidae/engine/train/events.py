@@ -79,9 +79,9 @@ def train_guard(tm: TrainModel, t: float, y: Floats, evaluated: bool) -> float:
 
 @compiled
 def next_train_stop(tm: TrainModel) -> float:
-    """Time of the coming knot of drive or load, or the end of the run [s]."""
+    """Time of the coming knot of drive or load, of the coming checkpoint, or the end of the run [s]."""
     train = tm.train[0]
-    stop = train.end
+    stop = min(train.end, train.pause)
     for k in (train.drive_mesh, train.load_mesh):
         m = model_at(tm.meshes[k].address)
         if m.state.next_knot < m.scene.knot_count:

@@ -134,6 +134,10 @@ TRAIN: Final = record_type(
     ("ages", INT),  # 1 if the friction of any joint grows with time at rest
     ("start", REAL),  # [s]
     ("end", REAL),  # [s]
+    (
+        "pause",
+        REAL,
+    ),  # time of the coming checkpoint that the run is to keep, where a block ends; infinite for none [s]
     ("samples", INT),
     ("judged", INT),  # shaft that is judged
     ("first_sample", REAL),  # start over the spacing of the samples, and over that of the looks

@@ -217,7 +217,7 @@ def advance_train(tm: TrainModel, out: TrainOutput, most: int) -> None:
     """Take steps until the run is done, the block is full, or so many have been taken."""
     train, y, new = tm.train[0], tm.y, tm.new
     for _ in range(most):
-        if train.done != 0 or train.error != 0 or not has_room(tm, out):
+        if train.done != 0 or train.error != 0 or train.time >= train.pause or not has_room(tm, out):
             return
         if train.fresh != 0:
             motion(tm, train.time, y, tm.rates[0])

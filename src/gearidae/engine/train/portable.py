@@ -111,7 +111,7 @@ class PortableDriver:
         tm = self._tm
         train = tm.train[0]
         for _ in range(most):
-            if train.done != 0 or train.error != 0:
+            if train.done != 0 or train.error != 0 or train.time >= train.pause:
                 return
             if not has_room(tm, out):
                 take()

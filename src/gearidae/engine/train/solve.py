@@ -23,7 +23,7 @@ from gearidae.engine.train.motion import torque_slopes
 from gearidae.engine.train.observe import kinetic_energy_of, write_stored
 from gearidae.engine.train.portable import PortableDriver
 from gearidae.engine.train.record import REST_NUMBERS, TRAIN_EVENT_NUMBERS
-from gearidae.engine.train.start import take_up
+from gearidae.engine.train.start import begin_anew, take_up
 from gearidae.errors import SceneError
 from gearidae.laws.shaft.own import law_address, switch_address
 from gearidae.records import Statistics, sample_times
@@ -191,6 +191,7 @@ def _follow(
     """
     tm, train = problem.model, problem.model.train[0]
     status, message, words = "", "", pack_train(problem) if train.done else None
+    _set_pause(problem)
     with compiling(TRAIN, HOW_LONG[TRAIN]):
         advance_train(tm, kept.out, 0)
     begun = time.perf_counter() - wall_time
@@ -203,8 +204,11 @@ def _follow(
                 portable.advance(kept.out, PORTABLE_STEPS, lambda: kept.take(problem))
             kept.take(problem)
             if train.error == 0:
+                if train.time >= train.pause:
+                    begin_anew(tm)
                 words = pack_train(problem)
                 take_up(tm)
+                _set_pause(problem)
                 if on_block is not None:
                     seconds = time.perf_counter() - begun
                     tables = dict(zip(TABLES, kept.untold(), strict=True))
@@ -222,6 +226,12 @@ def _follow(
         status, message = statistics.ending.status, statistics.message
     solution = _solution(problem, kept, statistics, status, message)
     return solution if train.error or status == "interrupted" else replace(solution, checkpoint=words)
+
+
+def _set_pause(problem: TrainProblem) -> None:
+    """Set the time of the coming checkpoint that the run is to keep."""
+    run, train = problem.scene.run, problem.model.train[0]
+    train.pause = min((t for t in run.checkpoints if train.time < t < train.end), default=math.inf)
 
 
 def _energy_of_run(problem: TrainProblem) -> float:

@@ -21,6 +21,8 @@ from gearidae.engine.train.sticking import begin_sticking
 
 FIRST: Final = 1e-3
 """First step, of the fastest time of the meshes."""
+ANEW: Final = 0.1
+"""First step of a run that goes on from another, where forces may jump, of that time at most."""
 
 
 @compiled(makes_arrays=True)
@@ -63,6 +65,12 @@ def take_up(tm: TrainModel) -> None:
     train.fresh = 1
     if train.time >= train.end or train_way_left(tm, tm.y) <= 0.0:
         train.done = 1  # interrupted behind its last block
+
+
+def begin_anew(tm: TrainModel) -> None:
+    """Begin with a short step, as a run does that goes on from another; in Python."""
+    train = tm.train[0]
+    train.step = min(float(train.step), ANEW * float(train.tau))
 
 
 @compiled
