@@ -108,19 +108,25 @@ def test_what_the_film_takes_is_a_loss_of_the_balance(sam, rtol):
     assert_balanced(run.balance, scene)
 
 
-@pytest.mark.parametrize("rtol", [1e-7, 1e-9])
+@pytest.mark.parametrize(
+    ("duration", "torque", "rtol"), [(4e-3, 1.6e-18, 1e-7), (4e-3, 1.6e-18, 1e-9), (0.14, 5.9e-18, 1e-10)]
+)
 @pytest.mark.parametrize("backend", ["native", "sksundae"])
-def test_hubs_carry_the_force_of_a_film(backend, rtol):
-    """It changes with the acceleration of the gap: hubs were booked without that, by up to 6.6 bounds at 1e-9."""
+def test_hubs_carry_the_force_of_a_film(backend, duration, torque, rtol):
+    """It changes with the acceleration of the gap, and not with the length of the contact.
+
+    Hubs were booked without the one, by 6.4 bounds where the film begins to act, and with the other, by 2.7 bounds where
+    pairs come and go (0.35 with the portable driver).
+    """
     tables = {
         **OWN_PAIR,
         "surface": PRESET.to_dict()["surface"],
-        "contact": {"bodies": "rigid"},
-        "drive": {"torque": 1.6e-18},
-        "run": {"duration": 4e-3, "samples": "off", "rtol": rtol},
+        "contact": {"bodies": "rigid", "asperity": "hertz"},
+        "drive": {"torque": torque},
+        "run": {"duration": duration, "samples": "off", "rtol": rtol},
     }
     changes = {
-        "mesh.film_damping": 4.5e-6,
+        "mesh.film_damping": 6.4e-6,
         "mesh.film_gap": 3e-8,
         "gears.hub_friction": 0.2,
         "gears.pinion_hub_radius": 3e-6,
@@ -128,7 +134,7 @@ def test_hubs_carry_the_force_of_a_film(backend, rtol):
         "load.torque": 1e-21,
     }
     balance = solve(gd.Scene.from_dict(tables).replace({**TEETH_27_50, **changes}), backend=backend).balance
-    assert balance.film_loss > 0.5 * balance.drive_work
+    assert balance.film_loss > 0.02 * balance.drive_work
     assert balance.pinion_hub_loss > 0.01 * balance.drive_work
     assert abs(balance.residual) <= 0.1 * balance.bound(rtol, roller=False)
 

@@ -147,13 +147,6 @@ def test_hubs_lock(coefficient, torque):
     assert starting_torque(Scene.from_dict(tables))[0] == pytest.approx(torque, rel=1e-6, abs=0.0)
 
 
-def test_a_loop_has_no_closed_starting_torque():
-    tables = split()
-    for shaft in tables["shafts"].values():
-        shaft |= {"hub_friction": 0.3, "hub_radius": 3e-6}
-    assert math.isnan(starting_torque(Scene.from_dict(tables))[0])
-
-
 def test_gears_that_overlap_are_named():
     assert not list(overlapping(Scene.from_dict(chain()).train))
     assert ("input", "output") in overlapping(Scene.from_dict(chain("180 deg")).train)

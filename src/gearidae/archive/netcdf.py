@@ -90,8 +90,10 @@ def save(
     Raises
     ------
     SceneError
-        If the target is refused (see `check_target`) or the disk does not take the data.
+        If the target is refused (see `check_target`), the disk does not take the data, or they are the table that
+        ``ds.gearidae.train()`` makes of a pair.
     """
+    is_train(ds)  # refuses that table, which no reader takes for an archive
     with whole_file(path, overwrite=overwrite) as part, disk_errors():
         write(with_checksums(ds), part, compress=compress)
         seal(part)

@@ -80,7 +80,8 @@ def is_train(ds: xr.Dataset) -> bool:
     """
     if ds.attrs.get("form") == TABLE_OF_PAIR:
         allowed = (
-            "is a table to compare with trains, from ds.gearidae.train(): give the run of the pair itself"
+            "is a table to compare with trains, from ds.gearidae.train(): give the run of the pair itself, "
+            "and make the table from it again"
         )
         raise SceneError("dataset", f"({TABLE_OF_PAIR})", allowed)
     return "shaft" in ds.dims and "mesh" in ds.dims

@@ -146,16 +146,14 @@ def _hubs(scene: TrainScene, forces: Floats) -> Facts:
         return
     torque, starting = starting_torque(scene)
     if math.isinf(torque):
-        locked = next(
-            mesh.driven for mesh, f in zip(scene.train.meshes, starting, strict=True) if np.isinf(f)
-        )
-        yield Fact("starting torque", "none", f"the hub of {locked} locks the train")
-    elif math.isnan(torque):
-        yield Fact("starting torque", "unknown", "a loop shares its load")
+        locked = [mesh.driven for mesh, f in zip(scene.train.meshes, starting, strict=True) if np.isinf(f)]
+        words = f"the hub of {locked[0]} locks the train" if locked else "hubs lock the train"
+        yield Fact("starting torque", "none", words)
     elif rubbing_mesh(scene) is not None:
         yield Fact("starting torque", "unknown", "what friction of flanks holds is not unique")
     else:
         words = "of the drive: dry resistances and hubs, without the teeth"
+        words += ", at the phases of the start" if scene.train.loops else ""
         if ages(scene):
             words += f"; after {scene.initial.rest_time:g} s of rest"
         yield Fact("starting torque", f"{torque:.8g} N m", words, torque, "N m")

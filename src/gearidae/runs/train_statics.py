@@ -11,7 +11,7 @@ with the compliance of the contacts where shafts share their load in a loop. A m
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -37,6 +37,13 @@ _BALANCED: Final = 1e-12
 """Error of the balance, over the torques that it is the sum of, at which the iteration ends.
 
 Teeth that adhere may press each other in a loop with thousands of times what the drive gives: rounding is theirs."""
+
+_IN_TURN: Final = 200
+"""Times that forces and friction of a loop are found in turn; the change falls by the share of friction each time."""
+_LOCKS: Final = 1e3
+"""Over the torque without loads of the hubs: what grows beyond that is taken to lock."""
+_SAME: Final = 1e-10
+"""Relative change of a starting torque at which that ends."""
 
 
 def ratios(train: Train) -> Floats:
@@ -131,7 +138,7 @@ def mesh_forces(scene: TrainScene) -> Floats:
     # what every shaft is short of is what its meshes have to give; the equations add up to 0 by the ratios
     if len(train.meshes) == len(train.shafts) - 1 or not outside.any():
         return np.asarray(np.linalg.lstsq(arms.T, outside, rcond=None)[0])
-    return _shared(scene, arms, outside, torque)
+    return _shared(_contacts(scene), arms, outside, torque)
 
 
 def stages(scene: TrainScene) -> Iterator[tuple[str, GearScene]]:
@@ -141,23 +148,35 @@ def stages(scene: TrainScene) -> Iterator[tuple[str, GearScene]]:
         yield mesh.name, scene.pair(mesh.name).replace({"drive": {"torque": torque}, "load": None})
 
 
-def _shared(scene: TrainScene, arms: Floats, outside: Floats, torque: float) -> Floats:
+def _contacts(scene: TrainScene) -> list[_Mesh]:
+    """Contacts of all meshes at the phases of the start."""
+    return [_Mesh(scene, mesh) for mesh in scene.train.meshes]
+
+
+def _shared(contacts: Sequence[_Mesh], arms: Floats, outside: Floats, torque: float) -> Floats:
     """Forces of a train with loops: angles of the shafts at which the contacts balance all torques, by Newton.
+
+    Parameters
+    ----------
+    contacts : sequence of _Mesh
+    arms : ndarray, shape (meshes, shafts)
+        From `levers`.
+    outside : ndarray, shape (shafts,)
+        Torques besides those of the meshes [N m].
+    torque : float
+        Of the drive [N m].
 
     Raises
     ------
     SolverError
         If no such angles are found.
     """
-    train = scene.train
-    contacts = [_Mesh(scene, mesh) for mesh in train.meshes]
-    sigma = np.array([mesh.surface.roughness for mesh in train.meshes])
-    offset = np.array([mesh.offset for mesh in train.meshes])
+    sigma = np.array([contact.sigma for contact in contacts])
+    offset = np.array([contact.offset for contact in contacts])
     guess = np.linalg.lstsq(arms.T, outside, rcond=None)[0]
     least = 1e-3 * np.abs(guess).max()
     start = [contact.error_at(max(force, least)) for contact, force in zip(contacts, guess, strict=True)]
-    free = [shaft for shaft in range(len(train.shafts)) if shaft != train.load]  # that of the load stands
-    arms, outside = arms[:, free], outside[free]
+    arms, outside = arms[:, :-1], outside[:-1]  # one shaft may stand where it is
     angles = np.linalg.lstsq(arms, np.array(start) + offset, rcond=None)[0]
     for _ in range(_NEWTON):
         errors = arms @ angles - offset
@@ -184,7 +203,7 @@ class _Mesh:
 
     def __init__(self, scene: TrainScene, mesh: TrainMesh) -> None:
         contact, geometry = pair_contact(scene.pair(mesh.name)), mesh.geometry
-        self.half, self.sigma = 0.5 * mesh.mesh.backlash, mesh.surface.roughness
+        self.half, self.sigma, self.offset = 0.5 * mesh.mesh.backlash, mesh.surface.roughness, mesh.offset
         first = mesh.phase - math.floor(mesh.phase) - 1.0
         positions = np.arange(first, geometry.contact_ratio + 1.0) * geometry.base_pitch
         radii = curvature_radii(geometry, positions)[2]
@@ -243,7 +262,8 @@ def starting_torque(
 
         R_b (F - H) = sum R_a F' + dry + mu [r (|F n - V| + A) + r_d P],
 
-    with the forces F' of the meshes that it drives and their vector sum V.
+    with the forces F' of the meshes that it drives and their vector sum V. Where loops share their load, they do by the
+    compliance of the contacts, at the phases of the start.
 
     Parameters
     ----------
@@ -257,9 +277,14 @@ def starting_torque(
     Returns
     -------
     torque : float
-        [N m]; infinite where a hub locks, NaN where a loop shares its load.
+        [N m]; infinite where a hub locks, NaN where adhesion holds a train with loops.
     forces : ndarray, shape (meshes,)
         [N].
+
+    Raises
+    ------
+    SolverError
+        If the forces of a loop are not found.
     """
     return _limit(scene, held, hubs, 1.0)
 
@@ -272,7 +297,7 @@ def run_back_torque(scene: TrainScene) -> tuple[float, Floats]:
     Returns
     -------
     torque : float
-        [N m]; at most 0 where it cannot be driven back, NaN where a loop shares its load.
+        [N m]; at most 0 where it cannot be driven back.
     forces : ndarray, shape (meshes,)
         [N].
     """
@@ -286,7 +311,7 @@ def _limit(
     train = scene.train
     forces = np.full(len(train.meshes), math.nan)
     if train.loops:
-        return math.nan, forces
+        return _limit_of_loops(scene, hubs, way) if held is None or not held.any() else (math.nan, forces)
     dry, there = resistances(scene)[0], hubs_at_rest(scene)
     for number in reversed(_outwards(train)):
         hub = there[number] if hubs is None or number in hubs else None
@@ -305,6 +330,32 @@ def _limit(
         if math.isinf(forces[mine]):
             return math.inf, forces
     raise AssertionError("the drive's shaft is the first")
+
+
+def _limit_of_loops(scene: TrainScene, hubs: Collection[int] | None, way: float) -> tuple[float, Floats]:
+    """`_limit` of a train with loops: hubs slip under the loads that their own friction adds to, in turn."""
+    train, contacts = scene.train, _contacts(scene)
+    arms, dry = levers(train), resistances(scene)[0]
+    joints = [
+        None if hubs is not None and number not in hubs else hub
+        for number, hub in enumerate(hubs_at_rest(scene))
+    ]
+    least, torque, forces = math.nan, math.nan, np.zeros(len(contacts))
+    for _ in range(_IN_TURN):
+        loads = np.hypot(*hub_loads(train, forces).T)
+        taken = dry + way * np.array(
+            [0.0 if hub is None else hub.torque(load) for hub, load in zip(joints, loads, strict=True)]
+        )
+        before, torque = torque, float(taken @ ratios(train))
+        least = torque if math.isnan(least) else least
+        if torque <= 0.0 or abs(torque - before) <= _SAME * torque:
+            return torque, forces
+        if torque > _LOCKS * least:
+            break
+        outside = -taken
+        outside[train.drive] += torque
+        forces = _shared(contacts, arms, outside, torque)
+    return math.inf if way > 0.0 else 0.0, forces
 
 
 def _outwards(train: Train) -> list[int]:

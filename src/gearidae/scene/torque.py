@@ -182,13 +182,17 @@ class Drive(Group):
     )
     speed: Annotated[
         float | Knots | None, Scheduled(unit="rad/s", at_least=-1e12, at_most=1e12, least=1e-30)
-    ] = Field(default=None, description="speed of the pinion that the drive holds, a number or a schedule")
+    ] = Field(
+        default=None,
+        description="speed of the pinion, or the driven shaft, that the drive holds: a number or a schedule",
+    )
     speed_gain: Annotated[float, Quantity(unit="N m s/rad", at_least=0, at_most=1e12)] = Field(
-        default=0.0, description="torque over what the pinion's speed is short of that speed"
+        default=0.0, description="torque over what is lacking of that speed"
     )
 
     orientation: Phase = Field(
-        default=0.0, description="angle from the line of centres to the x axis of a law's force"
+        default=0.0,
+        description="angle from the line of centres, of a train from the x axis of its frame, to that of a law's force",
     )
     pin_radius: HubRadius = Field(default=0.0, description="radius of the pin joint of a law with a force")
     pin_friction: OptionalFriction = Field(

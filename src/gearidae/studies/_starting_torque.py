@@ -42,7 +42,8 @@ from gearidae.studies.starting_ramp import Pitch, nothing_followed, pitch_of
 from gearidae.studies.train_starting import (
     part_names,
     pitch_of_train,
-    require_static,
+    require_no_loop,
+    require_startable,
     static_start,
     train_parts,
 )
@@ -92,7 +93,8 @@ def static_starting_torque(scene: Scene, *, impacts: int = 3, lowest: float | No
         If the scene has no gears, or a setting is not allowed.
     """
     if is_long_train(scene):
-        return static_start(_require_train(scene, impacts), impacts, _lowest(scene, lowest))[0]
+        train = require_no_loop(_require_train(scene, impacts))
+        return static_start(train, impacts, _lowest(scene, lowest))[0]
     scene = _require_pair(scene, impacts)
     lowest, whole, geometry = _lowest(scene, lowest), Starting(scene), scene.geometry
     dry, lever = whole.torque(), geometry.base_radius_gear * whole.ratio
@@ -154,9 +156,10 @@ def starting_torque(
         less. Both are what dry resistance and joints take where adhesion does not hold even at the lowest torque, and
         NaN without `simulated`. ``parts`` divides the static torque along ``part``: dry resistance, adhesion of teeth,
         friction of flanks, hubs, pin, axial loads; of a train dry resistance, ``adhesion of MESH`` for each mesh, ``hub
-        of SHAFT`` for each shaft. All in N m on the pinion, of a train on the shaft of the drive; a run has turned a
-        train when each mesh has come so many pitches. The scene's own constant torque is the attribute
-        ``drive_torque``; ``message`` names the run that failed. With `rest_time` the same, dims (rest_time).
+        of SHAFT`` for each shaft. A train with loops has neither of these: they are NaN. All in N m on the pinion, of a
+        train on the shaft of the drive; a run has turned a train when each mesh has come so many pitches. The scene's
+        own constant torque is the attribute ``drive_torque``; ``message`` names the run that failed.
+        With `rest_time` the same, dims (rest_time).
 
         Of smooth contacts with `seeds`, dims (sam_fraction, seed): ``starting_torque``, the simulated one of each gear
         (NaN if none starts it), and ``stuck_torque``, at which it sticks. Along ``sam_fraction`` the
@@ -191,6 +194,8 @@ def starting_torque(
     tolerance, simulated = number("tolerance", tolerance), switch("simulated", simulated)
     if not 0.001 <= tolerance <= 1.0:
         raise SceneError("tolerance", tolerance, "must lie in 0.001..1")
+    if is_long_train(scene) and not simulated:
+        require_no_loop(scene)
     base, execution = prepared(scene, options, trains=True)
     rests = None if rest_time is None else _rests(base, rest_time, sam_fraction)
     if rests is not None:
@@ -248,9 +253,7 @@ def _torques_of_gears(
     gears, (points, scenes) = gears_of(base, seeds), coatings
 
     def work(kept: RunCache | None) -> xr.Dataset:
-        static = [
-            static_starting_torque(_alike(variant), impacts=impacts, lowest=lowest) for variant in scenes
-        ]
+        static = [_static(_alike(variant), impacts, lowest) for variant in scenes]
         searches = [
             _search_from(variant.replace(gear), impacts, lowest, torque)
             for variant, torque in zip(scenes, static, strict=True)
@@ -290,6 +293,13 @@ def _torques_of_gears(
 
     settings = [TEETH.kind, points, impacts, lowest, tolerance, seeds]
     return TEETH.compute(execution, base, work, settings, origin=scene)
+
+
+def _static(scene: AnyGears, impacts: int, lowest: float) -> float:
+    """Starting torque without inertia [N m]; NaN of a train with loops."""
+    if is_long_train(scene) and scene.train.loops:
+        return math.nan
+    return static_starting_torque(scene, impacts=impacts, lowest=lowest)
 
 
 def _alike(scene: AnyGears) -> AnyGears:
@@ -414,9 +424,10 @@ class _Search:
 def _searched(scene: AnyGears, impacts: int, lowest: float) -> _Search:
     """Begin the search of a scene's torque at the static one."""
     if is_long_train(scene):
-        static, held = static_start(scene, impacts, lowest)
-        names = part_names(scene)
-        parts = train_parts(scene, held) if math.isfinite(static) else np.full(len(names), math.nan)
+        static, parts = math.nan, np.full(len(part_names(scene)), math.nan)
+        if not scene.train.loops:
+            static, held = static_start(scene, impacts, lowest)
+            parts = train_parts(scene, held) if math.isfinite(static) else parts
         return _Search(scene, impacts, lowest, static, pitch_of_train(scene), parts)
     gears = require_gears(scene)
     static = static_starting_torque(gears, impacts=impacts, lowest=lowest)
@@ -508,7 +519,7 @@ def _require_pair(scene: Scene, impacts: int) -> GearScene:
 
 def _require_train(scene: TrainScene, impacts: int) -> TrainScene:
     _require_one_load(scene, impacts)
-    return require_static(scene)
+    return require_startable(scene)
 
 
 def _require_one_load(scene: Scene, impacts: int) -> None:

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from gearidae.scene import TrainScene
 
 
-def require_static(scene: TrainScene) -> TrainScene:
-    """Refuse trains whose starting torque has no closed form.
+def require_no_loop(scene: TrainScene) -> TrainScene:
+    """Refuse trains whose mesh exits cannot be followed in slow motion, as loops share the load.
 
     Raises
     ------
@@ -33,8 +33,22 @@ def require_static(scene: TrainScene) -> TrainScene:
         Naming the key.
     """
     if loops := scene.train.loops:
-        allowed = "must be left out: a loop shares its load by the compliance of its teeth"
+        allowed = (
+            "must be left out: a loop shares its load by the compliance of its teeth; simulated torques have no such "
+            "limit"
+        )
         raise SceneError("meshes", f"(loop {', '.join(loops[0])})", allowed)
+    return scene
+
+
+def require_startable(scene: TrainScene) -> TrainScene:
+    """Refuse trains whose starting torque is not one number.
+
+    Raises
+    ------
+    SceneError
+        Naming the key.
+    """
     if (name := rubbing_mesh(scene)) is not None:
         allowed = f"must be 0 ({name}): what friction of flanks holds is not unique, and a run with a slow ramp tells"
         raise SceneError("contact.friction", scene.contact.friction, allowed)

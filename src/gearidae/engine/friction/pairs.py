@@ -64,7 +64,9 @@ def set_limits(m: Model, t: float, w: float) -> None:
             noted.force_rate = noted.slope * noted.gap_rate + noted.drift
             continue
         longer = _length_rate(m, noted, w)
-        noted.force_rate = noted.slope * noted.gap_rate + longer * noted.force
+        # a film is as long as the tooth is wide, whatever the contact is
+        by_length = noted.force - noted.damping * noted.gap_rate
+        noted.force_rate = noted.slope * noted.gap_rate + longer * by_length
         if not rubs_by_material(m):
             noted.limit, noted.limit_slope = (
                 friction.even * noted.contact,

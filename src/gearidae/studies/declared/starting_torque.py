@@ -32,7 +32,7 @@ SEEDS: Final = 20
 """Gears of a population by default."""
 SLOW_ENOUGH: Final = 0.1
 """Change of the median by half the rate below which a rate is slow enough."""
-_TORQUE_WORDS: Final = "starting torque on the pinion"
+_TORQUE_WORDS: Final = "starting torque of the drive"
 _OWN: Final = "the drive's own"
 _REST: Final = "initial.rest_time"
 _ALONG: Final = ("sam_fraction",)
@@ -84,7 +84,11 @@ def _train_sentence(ds: xr.Dataset) -> str:
     most = parts.isel(part=int(np.argmax(parts.values)))
     share = 100.0 * float(most) / float(static[0]) if static[0] > 0.0 else 0.0
     taken = f"; {most['part'].item()} takes {share:.3g} % of it" if share > 0.0 else ""
-    also = "" if slowly else f", at {with_prefix(float(static[0]), 'N m', 4)} without inertia"
+    also = (
+        ""
+        if slowly or math.isnan(static[0])
+        else f", at {with_prefix(float(static[0]), 'N m', 4)} without inertia"
+    )
     return f"The train starts at {low} on {shaft}{slowly}{also}{taken}."
 
 
@@ -145,9 +149,10 @@ def _rows(ds: xr.Dataset) -> Rows:
             with_prefix(float(point[which]), "N m", 4)
             for which in ("simulated_torque", "simulated_stuck", "static_torque")
         )
-        words = f"sticks at {sticks}, static {static}"
+        also = "" if np.isnan(point["static_torque"]) else f", static {static}"
+        words = f"sticks at {sticks}{also}"
         if np.isnan(point["simulated_torque"]):
-            turns, words = "-", f"no simulated torque, static {static}"
+            turns, words = "-", f"no simulated torque{also}"
             message = str(point["message"].values) if "message" in point else ""
             words += f": {message}" if message else ""
         yield name, turns, words
