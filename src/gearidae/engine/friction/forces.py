@@ -189,6 +189,8 @@ def solve_shafts(m: Model, t: float, y: Floats, surface_speed: float, pinion: fl
     mesh, loads, pin, corner = pairs.mesh, Loads(0.0, 0.0), (0.0, 0.0), math.inf
     if friction.joints != 0:
         pin = pin_force(m, t, y, surface_speed)
+        if friction.forced != 0:
+            m.work.friction.pin[0], m.work.friction.pin[1] = pin
         loads, along = turning_loads(m, mesh, pin)
         if has_hubs(m) and state.hold != AT_REST and state.hold != HELD_PAIR:
             corner = state.load_sign * along + RUBS
@@ -273,12 +275,14 @@ def rubbed_accelerations(
 
 @compiled_once(FRICTION)
 def load_pace(m: Model, speed_weight: float) -> float:
-    """Rate at which the load of the hubs changes, over that load, where it passes beside zero; 0 elsewhere.
+    """Rate at which the load of a hub changes, over that load, where it passes beside zero; 0 elsewhere.
 
     Where the forces of two pairs, or of two materials, turn round one by one, their vector sum S passes zero at the
     distance ``d = |S x S'| / |S'|``. Its modulus then turns within the time d / |S'|, which a step of high order passes
     over without a large estimate of its error; and it is as wrong at each passage, since the modulus is missed where
-    it is least. A sum on a line through zero has d = 0: there the load goes on below zero, see `turning_loads`.
+    it is least. A sum on a line through zero has d = 0: there the load goes on below zero, see `turning_loads`. The hub
+    of a pinion that a pin pushes with P bears S - P, which passes beside zero where S turns round on its line, too; P
+    changes little meanwhile.
 
     Parameters
     ----------
@@ -305,15 +309,26 @@ def load_pace(m: Model, speed_weight: float) -> float:
             drive_friction_rate += slip * noted.limit_rate
     x, z = vector_sum(m, Mesh(drive, coast, drive_friction, coast_friction))
     x_rate, z_rate = vector_sum(m, Mesh(drive_rate, coast_rate, drive_friction_rate, coast_friction_rate))
+    on_pinion = m.scene.pinion_inverse_mass * friction.joint[DRIVE].by_load
+    on_gear = m.scene.gear_inverse_mass * friction.joint[LOAD].by_load
+    if friction.forced == 0:
+        return _pace_beside(x, z, x_rate, z_rate, (on_pinion + on_gear) * speed_weight)
+    pin = m.work.friction.pin
+    pinion = _pace_beside(x - pin[0], z - pin[1], x_rate, z_rate, on_pinion * speed_weight)
+    return max(pinion, _pace_beside(x, z, x_rate, z_rate, on_gear * speed_weight))
+
+
+@compiled(inline=True)
+def _pace_beside(x: float, z: float, x_rate: float, z_rate: float, weight: float) -> float:
+    """Return the rate of a vector over it, unless its passage beside zero changes speeds by less than is `SEEN`.
+
+    The weight is by how much it accelerates the shafts, over the tolerance of their speeds.
+    """
     load, rate = math.hypot(x, z), math.hypot(x_rate, z_rate)
     if load == 0.0 or rate == 0.0:
         return 0.0
     beside = abs(x * z_rate - z * x_rate) / rate
-    on_pinion = m.scene.pinion_inverse_mass * friction.joint[DRIVE].by_load if friction.forced == 0 else 0.0
-    on_gear = m.scene.gear_inverse_mass * friction.joint[LOAD].by_load
-    if (on_pinion + on_gear) * beside * beside * speed_weight <= SEEN * rate:
-        return 0.0
-    return float(rate / load)
+    return rate / load if weight * beside * beside > SEEN * rate else 0.0
 
 
 class Slopes(NamedTuple):
