@@ -317,7 +317,8 @@ def test_what_formulas_of_ida_damp_stays_within_the_bound():
 def test_a_pinion_that_a_pin_pushes_while_it_rings():
     """The load of its hub passes beside zero by as much as the pin's force has across the line of action.
 
-    Steps passed over that, by 1e-4 of the hub loss at every turn of the force: the balance was out by 0.94 bounds, and by 2.1 later.
+    Steps passed over that, by 1e-4 of the hub loss at every turn of the force: the balance was out by 0.94 bounds here,
+    and by 2.1 later.
     """
     engine = {"name": "microengine", "radius": 1e-5, "force": 3.2e-13, "phase": -0.9, "frequency": 0.16}
     hubs = {"gears.hub_friction": 0.2, "gears.pinion_hub_radius": 3e-6, "gears.gear_hub_radius": 6e-6}

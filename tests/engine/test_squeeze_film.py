@@ -115,8 +115,8 @@ def test_what_the_film_takes_is_a_loss_of_the_balance(sam, rtol):
 def test_hubs_carry_the_force_of_a_film(backend, duration, torque, rtol):
     """It changes with the acceleration of the gap, and not with the length of the contact.
 
-    Hubs were booked without the one, by 6.4 bounds where the film begins to act, and with the other, by 2.7 bounds where
-    pairs come and go; with the portable driver by 0.35.
+    Hubs were booked without the one, by 6.4 bounds where the film begins to act, and with the other, by 2.7 where
+    pairs come and go.
     """
     tables = {
         **OWN_PAIR,

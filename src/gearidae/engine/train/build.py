@@ -34,6 +34,8 @@ from gearidae.scene.pitch_errors import error_on_path
 from gearidae.scene.scene import TrainScene
 from gearidae.scene.train import Train
 
+LATEST: Final = 0.1
+"""Of a step and the root of the tolerance: rates then are good for a way whose square is a hundredth of that."""
 TURNS_LOW: Final = 16.0
 """Pitches of the load's gear that are taken out of its angle at once, at least."""
 
@@ -274,6 +276,7 @@ def _fraction(train: Train, shaft: int, teeth: int, load: int) -> Fraction:
 def _add_tolerances(tm: TrainModel, scene: TrainScene, problems: tuple[Problem, ...]) -> None:
     """Set the tolerances of the states by those of the meshes, and how long steps may be."""
     n, rtol = len(tm.shafts), scene.run.rtol
+    tm.train[0].latest = LATEST * math.sqrt(rtol)
     radii: list[list[tuple[float, float]]] = [[] for _ in range(n)]
     for mesh, problem in zip(tm.meshes, problems, strict=True):
         s = problem.prepare(rtol, scene.run.sample_count).scene
