@@ -639,4 +639,32 @@ MUTANTS = (
         "rate.constant",
         ("engine/test_ageing.py::test_rates_of_the_powers_of_joints_that_age_are_those_along_the_motion",),
     ),
+    Mutant(
+        "loads of hubs without the acceleration of a film's gap",
+        "engine/observers/friction_losses.py",
+        "if noted.damping != 0.0:",
+        "if noted.damping > 0.0:",
+        ("engine/test_squeeze_film.py::test_hubs_carry_the_force_of_a_film",),
+    ),
+    Mutant(
+        "a film whose force changes with the length of the contact",
+        "engine/friction/pairs.py",
+        "by_length = noted.force - noted.damping * noted.gap_rate",
+        "by_length = noted.force",
+        ("engine/test_squeeze_film.py::test_hubs_carry_the_force_of_a_film",),
+    ),
+    Mutant(
+        "steps that pass over the least load of a hub whose pinion a pin pushes",
+        "engine/friction/forces.py",
+        "return max(pinion, ",
+        "return max(0.0, ",
+        ("engine/test_energy_balance.py::test_a_pinion_that_a_pin_pushes_while_it_rings",),
+    ),
+    Mutant(
+        "steps of trains that end at an event with the state of their polynomial",
+        "engine/train/loop.py",
+        "if defect_at(tm, h, share) <= DEFECT:",
+        "if defect_at(tm, h, share) < math.inf:",
+        ("properties/test_random_trains.py::test_steps_that_end_at_events_keep_the_energy",),
+    ),
 )
