@@ -35,7 +35,9 @@ from gearidae.scene.scene import TrainScene
 from gearidae.scene.train import Train
 
 LATEST: Final = 0.1
-"""Of a step and the root of the tolerance: rates then are good for a way whose square is a hundredth of that."""
+"""Of a step, over the root of the tolerance: by how much a root may lie later than the polynomial says.
+
+States go there by their rates alone, which leave out half its square: a two hundredth of the tolerance."""
 TURNS_LOW: Final = 16.0
 """Pitches of the load's gear that are taken out of its angle at once, at least."""
 

@@ -134,10 +134,7 @@ TRAIN: Final = record_type(
     ("ages", INT),  # 1 if the friction of any joint grows with time at rest
     ("start", REAL),  # [s]
     ("end", REAL),  # [s]
-    (
-        "pause",
-        REAL,
-    ),  # time of the coming checkpoint that the run is to keep, where a block ends; infinite for none [s]
+    ("pause", REAL),  # time of the coming checkpoint, infinite for none [s]
     ("samples", INT),
     ("judged", INT),  # shaft that is judged
     ("first_sample", REAL),  # start over the spacing of the samples, and over that of the looks
@@ -146,7 +143,7 @@ TRAIN: Final = record_type(
     ("stop_from", REAL),  # place of the load's gear from which that counts
     ("longest_step", REAL),  # [s]
     ("rest_step", REAL),  # longest while a shaft is held [s]
-    ("latest", REAL),  # by how much of a step a root may lie later than its polynomial says
+    ("latest", REAL),  # by how much a root may lie later than the polynomial of a step says, over the step
     ("tau", REAL),  # fastest time of the meshes [s]
     # state
     ("whole_pitches", REAL),  # whole pitches taken out of the load's angle
