@@ -660,11 +660,4 @@ MUTANTS = (
         "return max(0.0, ",
         ("engine/test_energy_balance.py::test_a_pinion_that_a_pin_pushes_while_it_rings",),
     ),
-    Mutant(
-        "steps of trains that end at an event with the state of their polynomial",
-        "engine/train/loop.py",
-        "if defect_at(tm, h, share) <= DEFECT:",
-        "if defect_at(tm, h, share) < math.inf:",
-        ("properties/test_random_trains.py::test_steps_that_end_at_events_keep_the_energy",),
-    ),
 )

@@ -28,16 +28,6 @@ def test_a_random_train_moves_as_mechanics_demands(number):
     assert_hubs_bear_the_teeth(scene, solution)
 
 
-@pytest.mark.parametrize("rtol", [1e-7, 1e-9])
-def test_steps_that_end_at_events_keep_the_energy(rtol):
-    """Teeth that ring between both flanks, of which nearly every step ends at an event.
-
-    Where such a step ended with the state of its polynomial, the balance was out by up to 2.4 bounds.
-    """
-    energy = solve_train(random_train(7, 105), rtol=rtol).energy
-    assert abs(energy["residual"]) < 0.2 * energy["residual_bound"]
-
-
 def assert_energy_is_kept(solution):
     """Whole and mesh by mesh: what a mesh takes and gives apart is lost, or kept in its contacts."""
     energy, meshes = solution.energy, solution.mesh_totals

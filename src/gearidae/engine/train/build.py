@@ -34,10 +34,6 @@ from gearidae.scene.pitch_errors import error_on_path
 from gearidae.scene.scene import TrainScene
 from gearidae.scene.train import Train
 
-LATEST: Final = 0.1
-"""Of a step, over the root of the tolerance: by how much a root may lie later than the polynomial says.
-
-States go there by their rates alone, which leave out half its square: a two hundredth of the tolerance."""
 TURNS_LOW: Final = 16.0
 """Pitches of the load's gear that are taken out of its angle at once, at least."""
 
@@ -278,7 +274,6 @@ def _fraction(train: Train, shaft: int, teeth: int, load: int) -> Fraction:
 def _add_tolerances(tm: TrainModel, scene: TrainScene, problems: tuple[Problem, ...]) -> None:
     """Set the tolerances of the states by those of the meshes, and how long steps may be."""
     n, rtol = len(tm.shafts), scene.run.rtol
-    tm.train[0].latest = LATEST * math.sqrt(rtol)
     radii: list[list[tuple[float, float]]] = [[] for _ in range(n)]
     for mesh, problem in zip(tm.meshes, problems, strict=True):
         s = problem.prepare(rtol, scene.run.sample_count).scene

@@ -121,21 +121,3 @@ def state_at(tm: TrainModel, share: float, count: int, out: Floats) -> None:
         for p in range(POWERS - 1, -1, -1):
             value = (value + tm.dense[p, j]) * (share if p % 2 == 0 else 1.0 - share)
         out[j] = tm.y[j] + value
-
-
-@compiled
-def defect_at(tm: TrainModel, h: float, share: float) -> float:
-    """By how much a step's polynomial fails to solve the equations at a share of it, over the tolerance.
-
-    It is the length h times the difference of its rates and those that `motion` has found there, in ``tm.rates[12]``.
-    """
-    n, total = 2 * len(tm.shafts), 0.0
-    for j in range(n):
-        value = slope = 0.0
-        for p in range(POWERS - 1, -1, -1):
-            at, way = (share, 1.0) if p % 2 == 0 else (1.0 - share, -1.0)
-            value += tm.dense[p, j]
-            slope = slope * at + value * way
-            value *= at
-        total += ((slope - h * tm.rates[STAGES, j]) * tm.weights[j]) ** 2
-    return math.sqrt(total / n)

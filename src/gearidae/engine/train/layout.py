@@ -143,7 +143,6 @@ TRAIN: Final = record_type(
     ("stop_from", REAL),  # place of the load's gear from which that counts
     ("longest_step", REAL),  # [s]
     ("rest_step", REAL),  # longest while a shaft is held [s]
-    ("latest", REAL),  # by how much a root may lie later than the polynomial of a step says, over the step
     ("tau", REAL),  # fastest time of the meshes [s]
     # state
     ("whole_pitches", REAL),  # whole pitches taken out of the load's angle

@@ -20,7 +20,7 @@ from gearidae.engine.train.events import (
     train_guard,
     train_way_left,
 )
-from gearidae.engine.train.formula import attempt, defect_at, make_polynomial, next_length, state_at
+from gearidae.engine.train.formula import attempt, make_polynomial, next_length, state_at
 from gearidae.engine.train.layout import TrainModel, TrainOutput
 from gearidae.engine.train.motion import motion
 from gearidae.engine.train.observe import (
@@ -43,17 +43,6 @@ LEAST_STEP: Final = 1e-15
 """Of the time, or of the fastest time of the meshes."""
 LAST: Final = 1e-10
 """Of a step: what would be left of the way to a stop is taken with it."""
-DEFECT: Final = 10.0
-"""Of a polynomial, over the tolerance: with more, a step that ends at a root is taken once more.
-
-Rates of a polynomial err by some times its order of what it errs by itself. With 1 chains take 10 % more time, and
-their speeds are no better."""
-LEAST_LATER: Final = 1e-12
-"""Of a step: by how much a root is first looked for later than its polynomial says."""
-LATER: Final = 8.0
-"""By how much further each time."""
-SHORT: Final = 1e-3
-"""Of a step: the next, where a root lies later than that."""
 LOOKS: Final = 2001
 """Times at which every run is looked at to be judged, whatever is sampled: enough for mean speeds and their spread.
 
@@ -215,35 +204,6 @@ def finish_train_step(tm: TrainModel, time: float, root: bool, stop: float, out:
 
 
 @compiled
-def _end_near_root(tm: TrainModel, h: float, share: float, value: float, stop: float) -> tuple[float, float]:
-    """Let the step of the length h whose polynomial is known end at a root within it; its time [s] and guard there.
-
-    The formula does not control the error of its polynomial. Where that is above the tolerance the step is taken once
-    more, as far as the root: where teeth ring most steps end at one, and energies were out by a hundred times what the
-    steps cost. The root may then lie a little later. If it lies much later, the guard is above zero yet: the next step
-    is to find it.
-    """
-    y, new, rates, time = tm.y, tm.new, tm.rates, tm.train[0].time + share * h
-    state_at(tm, share, y.size, new)
-    motion(tm, time, new, rates[12])
-    if defect_at(tm, h, share) <= DEFECT:
-        return time, value
-    attempt(tm, share * h)
-    later, value = 0.0, train_guard(tm, time, new, False)
-    while value > 0.0:
-        further = max(LATER * later, LEAST_LATER * h)
-        if further > tm.train[0].latest * h or time + further > stop:
-            break
-        for j in range(y.size):
-            new[j] += (further - later) * rates[12, j]
-        later = further
-        value = train_guard(tm, time + later, new, False)
-    if later > 0.0:
-        motion(tm, time + later, new, rates[12])
-    return time + later, value
-
-
-@compiled
 def has_room(tm: TrainModel, out: TrainOutput) -> bool:
     """Whether a block has room for all that may happen at one time."""
     train = tm.train[0]
@@ -283,13 +243,12 @@ def advance_train(tm: TrainModel, out: TrainOutput, most: int) -> None:
                 share = locate(tm, h, 0.0, train.guard, 1.0, guard_at(tm, h, 1.0))
             if share < 1.0:
                 time = train.time + share * h
+                state_at(tm, share, y.size, new)
             if not _sample_step(tm, time, h, out):
                 return  # the step is taken again with room for its samples
             if seen:
                 follow_forces(tm, share, h)
         if share < 1.0:
-            time, value = _end_near_root(tm, h, share, value, stop)
-            if root and value > 0.0:
-                root, after = False, SHORT * h
+            motion(tm, time, new, tm.rates[12])
         train.guard, train.step = value, after
         finish_train_step(tm, time, root, stop, out)
