@@ -641,9 +641,9 @@ MUTANTS = (
     ),
     Mutant(
         "loads of hubs without the acceleration of a film's gap",
-        "engine/observers/friction_losses.py",
-        "if noted.damping != 0.0:",
-        "if noted.damping > 0.0:",
+        "engine/friction/pairs.py",
+        "return float(noted.force_rate + noted.damping * gap_acceleration)",
+        "return float(noted.force_rate)",
         ("engine/test_squeeze_film.py::test_hubs_carry_the_force_of_a_film",),
     ),
     Mutant(

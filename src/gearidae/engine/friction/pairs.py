@@ -15,6 +15,7 @@ from gearidae.engine.laws.statistical import limit_of_materials
 from gearidae.engine.model.record_types import STUCK
 from gearidae.engine.model.state import COAST, Model, Record
 from gearidae.engine.pairs.coverage import rubs_by_material
+from gearidae.engine.pairs.orbit import acceleration_of_gap
 from gearidae.engine.pairs.tooth_pairs import flank_of_history
 
 RUBS: Final = 1e-8
@@ -75,6 +76,17 @@ def set_limits(m: Model, t: float, w: float) -> None:
         elif m.scene.nodes == 0:
             noted.limit, noted.limit_slope = limit_of_materials(m, t, i)
         noted.limit_rate = noted.limit_slope * noted.gap_rate + longer * noted.limit
+
+
+@compiled(inline=True)
+def rate_of_force(m: Model, noted: Record, w: float, v_rate: float, w_rate: float) -> float:
+    """Rate of a noted force along the motion, with what the acceleration of its gap changes, as in a film.
+
+    Accelerations are those of u and of the gear's surface, `w` is the surface velocity of the gear.
+    """
+    flank = flank_of_history(m, noted.history)
+    gap_acceleration = acceleration_of_gap(m, flank, noted.relief, w, v_rate, w_rate)
+    return float(noted.force_rate + noted.damping * gap_acceleration)
 
 
 @compiled(inline=True)

@@ -16,10 +16,10 @@ from gearidae.engine.compiling import FRICTION
 from gearidae.engine.friction.ageing import OfJoints, joint_friction, joint_friction_rate
 from gearidae.engine.friction.forces import Shafts, solve_shafts
 from gearidae.engine.friction.hubs import Loads, Mesh, has_hubs, pin_rate, vector_sum
-from gearidae.engine.friction.pairs import direction, lever_rate, levers, set_limits
+from gearidae.engine.friction.pairs import direction, lever_rate, levers, rate_of_force, set_limits
 from gearidae.engine.laws.pairs import mesh_force
 from gearidae.engine.model.record_types import HELD_PAIR
-from gearidae.engine.model.state import COAST, PHASE, Floats, Model, Record, U, V, W
+from gearidae.engine.model.state import COAST, PHASE, Floats, Model, U, V, W
 from gearidae.engine.motion.pair_forces import follow_slopes, is_eliminated, set_deflections
 from gearidae.engine.motion.shafts import forces_at_shafts
 from gearidae.engine.observers.exposures.friction_work import (
@@ -30,7 +30,6 @@ from gearidae.engine.observers.exposures.friction_work import (
     note_power,
 )
 from gearidae.engine.pairs.mesh_error import acceleration_of, error_at
-from gearidae.engine.pairs.orbit import acceleration_of_gap
 from gearidae.engine.pairs.tooth_pairs import flank_of_history
 from gearidae.formulas.quadrature import error_estimate, integral, integral_with_middle
 from gearidae.laws.friction_law import slip_of
@@ -64,6 +63,8 @@ def note_friction(m: Model, t: float, y: Floats) -> float:
     r.time, force = t, mesh_force(m, y[V], shafts.mesh.drive - shafts.mesh.coast)
     for which in range(_POWERS):
         r.power[which] = r.power_rate[which] = 0.0
+    e = error_at(m, y[U], y[PHASE])
+    v_rate = acceleration_of(e, surface_speed, y[W], shafts.pinion, shafts.gear)
     drive = coast = drive_friction = coast_friction = 0.0  # rates
     begin_powers(m)
     for i in range(m.work.pair_forces.count):
@@ -78,11 +79,12 @@ def note_friction(m: Model, t: float, y: Floats) -> float:
         r.power[flank] += power
         r.power_rate[flank] += power_rate
         note_power(m, noted.history, power, power_rate)
+        changes = rate_of_force(m, noted, y[W], v_rate, shafts.gear)
         if flank == COAST:
-            coast += _force_rate(m, noted, y, surface_speed, shafts)
+            coast += changes
             coast_friction += rate
         else:
-            drive += _force_rate(m, noted, y, surface_speed, shafts)
+            drive += changes
             drive_friction += rate
     if m.scene.friction.joints != 0:
         force_rate = pin_rate(m, t, y, surface_speed, shafts.pinion)
@@ -95,18 +97,6 @@ def note_friction(m: Model, t: float, y: Floats) -> float:
         joints, rates = joint_friction(m, t, y), joint_friction_rate(m, t, y)
         _note_joints(m, shafts, joints, rates, load_rate, force_rate, (surface_speed, y[W]))
     return float(force)
-
-
-@compiled(inline=True)
-def _force_rate(m: Model, noted: Record, y: Floats, surface_speed: float, shafts: Shafts) -> float:
-    """Rate of a noted force, with what it changes by the rate of the gap, as that of a film does."""
-    rate = float(noted.force_rate)
-    if noted.damping != 0.0:
-        e = error_at(m, y[U], y[PHASE])
-        v_rate = acceleration_of(e, surface_speed, y[W], shafts.pinion, shafts.gear)
-        flank = flank_of_history(m, noted.history)
-        rate += noted.damping * acceleration_of_gap(m, flank, noted.relief, y[W], v_rate, shafts.gear)
-    return rate
 
 
 @compiled

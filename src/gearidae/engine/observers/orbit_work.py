@@ -9,11 +9,10 @@ from __future__ import annotations
 
 from gearidae.compiled import compiled, compiled_once
 from gearidae.engine.compiling import FRICTION
-from gearidae.engine.friction.pairs import set_limits
+from gearidae.engine.friction.pairs import rate_of_force, set_limits
 from gearidae.engine.laws.pairs import mesh_by_rate, mesh_force
 from gearidae.engine.model.state import Floats, Model, V, W
 from gearidae.engine.motion.pair_forces import follow_slopes, forces_at
-from gearidae.engine.pairs.orbit import acceleration_of_gap
 from gearidae.engine.pairs.tooth_pairs import flank_of_history, in_flight
 from gearidae.formulas.quadrature import error_estimate, integral
 
@@ -30,8 +29,7 @@ def _power(m: Model, t: float, y: Floats, yp: Floats) -> tuple[float, float]:
         for i in range(m.work.pair_forces.count):
             noted = m.work.pair_forces.pair[i]
             flank = flank_of_history(m, noted.history)
-            gap_acceleration = acceleration_of_gap(m, flank, noted.relief, y[W], yp[V], yp[W])
-            changes = noted.force_rate + noted.damping * gap_acceleration
+            changes = rate_of_force(m, noted, y[W], yp[V], yp[W])
             force += (1.0 - 2.0 * flank) * noted.force
             rate += (1.0 - 2.0 * flank) * changes
             coast_force += flank * noted.force
