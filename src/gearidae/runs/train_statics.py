@@ -310,11 +310,14 @@ def _limit(
     """Torque of the drive at which the train begins to move forward (way 1) or back (-1), and forces of the meshes."""
     train = scene.train
     forces = np.full(len(train.meshes), math.nan)
+    slipping = [
+        hub if hubs is None or number in hubs else None for number, hub in enumerate(hubs_at_rest(scene))
+    ]
     if train.loops:
-        return _limit_of_loops(scene, hubs, way) if held is None or not held.any() else (math.nan, forces)
-    dry, there = resistances(scene)[0], hubs_at_rest(scene)
+        return _limit_of_loops(scene, slipping, way) if held is None or not held.any() else (math.nan, forces)
+    dry = resistances(scene)[0]
     for number in reversed(_outwards(train)):
-        hub = there[number] if hubs is None or number in hubs else None
+        hub = slipping[number]
         driven = [k for k, mesh in enumerate(train.meshes) if mesh.a == number]
         pushed = sum((forces[k] * line_of_action(train, train.meshes[k]) for k in driven), np.zeros(2))
         constant = dry[number] + way * (0.0 if hub is None else hub.torque(0.0))
@@ -332,22 +335,17 @@ def _limit(
     raise AssertionError("the drive's shaft is the first")
 
 
-def _limit_of_loops(scene: TrainScene, hubs: Collection[int] | None, way: float) -> tuple[float, Floats]:
+def _limit_of_loops(scene: TrainScene, hubs: Sequence[Joint | None], way: float) -> tuple[float, Floats]:
     """`_limit` of a train with loops: hubs slip under the loads that their own friction adds to, in turn."""
     train, contacts = scene.train, _contacts(scene)
-    arms, dry = levers(train), resistances(scene)[0]
-    joints = [
-        None if hubs is not None and number not in hubs else hub
-        for number, hub in enumerate(hubs_at_rest(scene))
-    ]
-    least, torque, forces = math.nan, math.nan, np.zeros(len(contacts))
+    ratio, arms, dry = ratios(train), levers(train), resistances(scene)[0]
+    torque, least, forces = math.inf, math.inf, np.zeros(len(contacts))
     for _ in range(_IN_TURN):
         loads = np.hypot(*hub_loads(train, forces).T)
-        taken = dry + way * np.array(
-            [0.0 if hub is None else hub.torque(load) for hub, load in zip(joints, loads, strict=True)]
-        )
-        before, torque = torque, float(taken @ ratios(train))
-        least = torque if math.isnan(least) else least
+        friction = [0.0 if hub is None else hub.torque(load) for hub, load in zip(hubs, loads, strict=True)]
+        taken = dry + way * np.array(friction)
+        before, torque = torque, float(taken @ ratio)
+        least = min(least, torque)
         if torque <= 0.0 or abs(torque - before) <= _SAME * torque:
             return torque, forces
         if torque > _LOCKS * least:

@@ -253,7 +253,13 @@ def _torques_of_gears(
     gears, (points, scenes) = gears_of(base, seeds), coatings
 
     def work(kept: RunCache | None) -> xr.Dataset:
-        static = [_static(_alike(variant), impacts, lowest) for variant in scenes]
+        alike = [_alike(variant) for variant in scenes]
+        static = [
+            static_start(variant, impacts, lowest)[0]
+            if is_long_train(variant)
+            else static_starting_torque(variant, impacts=impacts, lowest=lowest)
+            for variant in alike
+        ]
         searches = [
             _search_from(variant.replace(gear), impacts, lowest, torque)
             for variant, torque in zip(scenes, static, strict=True)
@@ -293,13 +299,6 @@ def _torques_of_gears(
 
     settings = [TEETH.kind, points, impacts, lowest, tolerance, seeds]
     return TEETH.compute(execution, base, work, settings, origin=scene)
-
-
-def _static(scene: AnyGears, impacts: int, lowest: float) -> float:
-    """Starting torque without inertia [N m]; NaN of a train with loops."""
-    if is_long_train(scene) and scene.train.loops:
-        return math.nan
-    return static_starting_torque(scene, impacts=impacts, lowest=lowest)
 
 
 def _alike(scene: AnyGears) -> AnyGears:
@@ -424,10 +423,9 @@ class _Search:
 def _searched(scene: AnyGears, impacts: int, lowest: float) -> _Search:
     """Begin the search of a scene's torque at the static one."""
     if is_long_train(scene):
-        static, parts = math.nan, np.full(len(part_names(scene)), math.nan)
-        if not scene.train.loops:
-            static, held = static_start(scene, impacts, lowest)
-            parts = train_parts(scene, held) if math.isfinite(static) else parts
+        static, held = static_start(scene, impacts, lowest)
+        names = part_names(scene)
+        parts = train_parts(scene, held) if math.isfinite(static) else np.full(len(names), math.nan)
         return _Search(scene, impacts, lowest, static, pitch_of_train(scene), parts)
     gears = require_gears(scene)
     static = static_starting_torque(gears, impacts=impacts, lowest=lowest)

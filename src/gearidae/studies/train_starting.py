@@ -64,7 +64,7 @@ def static_start(scene: TrainScene, impacts: int, lowest: float) -> tuple[float,
     Parameters
     ----------
     scene : Scene
-        A train without loops.
+        A train.
     impacts : int
         Exits of each mesh that press its contacts deeper.
     lowest : float
@@ -74,11 +74,14 @@ def static_start(scene: TrainScene, impacts: int, lowest: float) -> tuple[float,
     -------
     torque : float
         [N m]; that of dry loads and hubs where adhesion does not hold the train at the lowest torque, infinite where it
-        holds it at any, or a hub locks.
+        holds it at any, or a hub locks; NaN of a train with loops, see `require_no_loop`.
     held : ndarray, shape (meshes,)
         Forces with which adhesion holds the driven gear of each mesh [N] at the place where the torque is needed.
     """
-    dry, nothing = starting_torque(scene)[0], np.zeros(len(scene.meshes))
+    nothing = np.zeros(len(scene.meshes))
+    if scene.train.loops:
+        return math.nan, nothing
+    dry = starting_torque(scene)[0]
     if math.isinf(dry):
         return dry, nothing
     release = TrainRelease(scene, impacts)
