@@ -22,7 +22,7 @@ class Initial(Group):
     """How the gears start; the pinion turns just so fast that the gap does not change at first."""
 
     gear_speed: Annotated[float, Quantity(unit="rad/s", at_least=-1e12, at_most=1e12, least=1e-30)] = Field(
-        default=0.0, description="speed of the gear, of a train that of the shaft that is loaded"
+        default=0.0, description="speed of the gear (of a train: the loaded shaft)"
     )
     gap: Annotated[float, Length(unit="m", shown=("nm", -9))] = Field(
         description="gap of the drive flank from the summits' mean plane, a length or in roughnesses"
@@ -109,7 +109,7 @@ class Run(Group):
     )
     stop: Annotated[str, BeforeValidator(_read_stop)] = Field(
         default="time",
-        description="what ends the run before its time: sticks, or turns N of the gear, of a train of the loaded shaft",
+        description="what ends the run before its time: sticks, or turns N of the gear (of a train: the loaded shaft)",
     )
     judged: str | None = Field(
         default=None, description="shaft of a train by which a run is judged; default that of the load"

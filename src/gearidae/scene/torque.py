@@ -187,12 +187,12 @@ class Drive(Group):
         description="speed of the pinion, or the driven shaft, that the drive holds: a number or a schedule",
     )
     speed_gain: Annotated[float, Quantity(unit="N m s/rad", at_least=0, at_most=1e12)] = Field(
-        default=0.0, description="torque over what is lacking of that speed"
+        default=0.0, description="torque over the difference between that speed and the actual one"
     )
 
     orientation: Phase = Field(
         default=0.0,
-        description="angle from the line of centres, of a train from the x axis of its frame, to that of a law's force",
+        description="angle from the line of centres (of a train: its x axis) to the x axis of a law's force",
     )
     pin_radius: HubRadius = Field(default=0.0, description="radius of the pin joint of a law with a force")
     pin_friction: OptionalFriction = Field(
